@@ -1,0 +1,71 @@
+#include "models/config.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include "models/presets.h"
+#include "models/strict_json.h"
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+constexpr std::uintmax_t kLargestFile = 1 << 20;
+
+std::string read_small_file(const std::string& path) {
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(path, failure);
+  if (failure) throw Error(fmt::format("{}: cannot be read as a configuration: {}", path, failure.message()));
+  if (size > kLargestFile)
+    throw Error(fmt::format("{}: {} bytes are too many for a configuration; check the path", path, size));
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file) throw Error(fmt::format("{}: cannot be read; check the path and its permissions", path));
+  return text;
+}
+
+}  // namespace
+
+Config Config::parse(std::string_view text, std::string_view origin) {
+  const nlohmann::json value = parse_strict_json(text, origin);
+  JsonObject root(value, std::string(origin), "");
+  Config c;
+  c.model = read_model_config(root.object("model"));
+  c.rooms = read_rooms_config(root.object("rooms"), RoomsConfig{});
+  c.training = read_training_config(root.object("training"), c.rooms);
+  root.finish();
+  return c;
+}
+
+Config Config::load(const std::string& path_or_preset) {
+  if (const auto preset = find_preset(path_or_preset))
+    return parse(*preset, fmt::format("preset {}", path_or_preset));
+  if (!std::filesystem::exists(path_or_preset)) {
+    throw UsageError(fmt::format("{}: no such file, nor a preset; the presets are {}", path_or_preset,
+                                 fmt::join(preset_names(), ", ")));
+  }
+  return parse(read_small_file(path_or_preset), path_or_preset);
+}
+
+std::string Config::to_json() const {
+  const nlohmann::ordered_json value{{"model", write_model_config(model)},
+                                     {"training", write_training_config(training, rooms)},
+                                     {"rooms", write_rooms_config(rooms)}};
+  return value.dump(2);
+}
+
+std::vector<TrainingStage> Config::stages() const {
+  if (!training.stages.empty()) return training.stages;
+  TrainingStage all;
+  all.learning_rate = training.learning_rate;
+  all.batch = training.batch;
+  all.rooms = rooms;
+  return {all};
+}
+
+}  // namespace vkopple

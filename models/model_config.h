@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string_view>
+
+#include "models/strict_json.h"
+
+namespace vkopple {
+
+/// How the predicted pose is held against the seen one: half the sum of both Kullback–Leibler divergences, or
+/// Jensen–Shannon.
+enum class PoseLoss { kKl, kJs };
+inline constexpr std::array<std::string_view, 2> kPoseLossNames{"kl", "js"};
+
+/// What fixes the model's shapes and formulas. The defaults are the published model's. Angles in radians,
+/// lengths in scene units.
+struct ModelConfig {
+  int height = 128;
+  int width = 128;
+  double fov = std::numbers::pi / 2;  ///< vertical
+  int slots = 3;                      ///< objects beside the background
+  int bins = 120;                     ///< of an object's yaw
+  int identity = 10;                  ///< leading components of the code by which objects are matched
+  int code = 64;
+  int depth_width = 16;  ///< channels of the depth network's first convolution; the others scale with it
+  int object_width = 64;
+  int imagine_width = 8;
+  int lstm = 256;
+  double max_depth = 7.2;
+  double max_height = 5.0;
+  double beta = 1.0;     ///< how fast the splat's weight falls with distance
+  double reg = 1.0;      ///< factor of the regularising losses
+  bool warp = true;      ///< false: only the imagined image is used (an ablation)
+  bool relaxed = false;  ///< true: learned motion; refused, it is not built yet
+  PoseLoss pose_loss = PoseLoss::kKl;
+  std::array<double, 3> dropout{0.05, 0.05, 0.0005};  ///< depth, object, imagination network
+
+  bool operator==(const ModelConfig&) const = default;
+
+  /// A model configuration alone, as a fixture's metadata has it. Throws Error naming origin and key.
+  static ModelConfig parse(std::string_view json, std::string_view origin);
+};
+
+/// Reads the object's members over the defaults; throws Error naming file and key.
+ModelConfig read_model_config(JsonObject object);
+nlohmann::ordered_json write_model_config(const ModelConfig& config);
+
+}  // namespace vkopple

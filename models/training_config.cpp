@@ -1,0 +1,103 @@
+#include "models/training_config.h"
+
+#include <algorithm>
+
+namespace vkopple {
+namespace {
+
+constexpr int kLargestBatch = 4096;
+constexpr double kSmallestRate = 1e-12;
+constexpr std::size_t kMostStages = 100;
+
+TrainingStage read_stage(JsonObject object, const TrainingConfig& training, const RoomsConfig& rooms) {
+  TrainingStage s;
+  s.learning_rate = training.learning_rate;
+  s.batch = training.batch;
+  object.text("name", s.name);
+  object.choices("networks", s.networks, kNetworkNames);
+  object.choice("hypotheses", s.hypotheses, kHypothesesNames);
+  std::int64_t steps = 0;
+  object.integer("steps", steps, 1, 1'000'000'000'000);
+  if (steps > 0) s.steps = steps;
+  object.number("learning_rate", s.learning_rate, kSmallestRate, 1);
+  object.integer("batch", s.batch, 1, kLargestBatch);
+  s.rooms = read_rooms_config(object.object("rooms"), rooms);
+  object.finish();
+  const bool plain = std::all_of(s.name.begin(), s.name.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
+  if (!plain || s.name.empty() || s.name.size() > 40) {
+    object.refuse("name", "is no name of a stage; give 1 to 40 of a-z, 0-9, _ and -");
+  }
+  return s;
+}
+
+nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& rooms) {
+  nlohmann::ordered_json networks = nlohmann::ordered_json::array();
+  for (const Network network : s.networks) networks.push_back(kNetworkNames[static_cast<std::size_t>(network)]);
+  nlohmann::ordered_json result{{"name", s.name},
+                                {"networks", networks},
+                                {"hypotheses", kHypothesesNames[static_cast<std::size_t>(s.hypotheses)]}};
+  if (s.steps) result["steps"] = *s.steps;
+  result["learning_rate"] = s.learning_rate;
+  result["batch"] = s.batch;
+  const nlohmann::ordered_json base = write_rooms_config(rooms);
+  const nlohmann::ordered_json mine = write_rooms_config(s.rooms);
+  auto overrides = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : mine.items()) {
+    if (value != base.at(key)) overrides[key] = value;
+  }
+  result["rooms"] = overrides;
+  return result;
+}
+
+void read_stages(JsonObject& object, TrainingConfig& c, const RoomsConfig& rooms) {
+  std::vector<JsonObject> listed = object.objects("stages", kMostStages);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    const TrainingStage stage = read_stage(listed[i], c, rooms);
+    const bool taken =
+        std::any_of(c.stages.begin(), c.stages.end(), [&](const auto& s) { return s.name == stage.name; });
+    if (taken) listed[i].refuse("name", "is another stage's too; give each its own");
+    if (!stage.steps && i + 1 < listed.size()) {
+      listed[i].refuse("steps", "is missing; only the last stage may go on without end");
+    }
+    c.stages.push_back(stage);
+  }
+}
+
+}  // namespace
+
+bool TrainingStage::learns(Network network) const {
+  return std::find(networks.begin(), networks.end(), network) != networks.end();
+}
+
+TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms) {
+  TrainingConfig c;
+  object.integer("batch", c.batch, 1, kLargestBatch);
+  object.number("learning_rate", c.learning_rate, kSmallestRate, 1);
+  object.numbers("betas", c.betas, 0, 0.999999);
+  object.number("epsilon", c.epsilon, 1e-12, 1);
+  JsonObject clip = object.object("clip");
+  clip.number("depth", c.clip.depth, 1e-9, 1e9);
+  clip.number("object", c.clip.object, 1e-9, 1e9);
+  clip.number("imagination", c.clip.imagination, 1e-9, 1e9);
+  clip.finish();
+  object.number("reverse_probability", c.reverse_probability, 0, 1);
+  read_stages(object, c, rooms);
+  object.finish();
+  return c;
+}
+
+nlohmann::ordered_json write_training_config(const TrainingConfig& c, const RoomsConfig& rooms) {
+  auto stages = nlohmann::ordered_json::array();
+  for (const TrainingStage& stage : c.stages) stages.push_back(write_stage(stage, rooms));
+  return {{"batch", c.batch},
+          {"learning_rate", c.learning_rate},
+          {"betas", c.betas},
+          {"epsilon", c.epsilon},
+          {"clip", {{"depth", c.clip.depth}, {"object", c.clip.object}, {"imagination", c.clip.imagination}}},
+          {"reverse_probability", c.reverse_probability},
+          {"stages", stages}};
+}
+
+}  // namespace vkopple

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "models/rooms_config.h"
+#include "models/strict_json.h"
+
+namespace vkopple {
+
+enum class Network { kDepth, kObject, kImagination };
+inline constexpr std::array<std::string_view, 3> kNetworkNames{"depth", "object", "imagination"};
+
+/// Which hypotheses of motion warp the image: every object's and the background's, or the background's alone.
+enum class Hypotheses { kAll, kBackground };
+inline constexpr std::array<std::string_view, 2> kHypothesesNames{"all", "background"};
+
+/// A stretch of training. What its JSON leaves out is taken from the surrounding configuration.
+struct TrainingStage {
+  std::string name = "all";
+  std::vector<Network> networks{Network::kDepth, Network::kObject,
+                                Network::kImagination};  ///< those that learn
+  Hypotheses hypotheses = Hypotheses::kAll;
+  std::optional<std::int64_t> steps;  ///< absent: to the end of training; only the last stage's may be
+  double learning_rate = 3e-4;
+  int batch = 20;
+  RoomsConfig rooms;
+
+  bool learns(Network network) const;
+  bool operator==(const TrainingStage&) const = default;
+};
+
+/// How the model is trained: Adam with gradients clipped by value. The defaults are the published recipe.
+struct TrainingConfig {
+  struct Clip {
+    double depth = 2.5;
+    double object = 1.0;
+    double imagination = 1.0;
+    bool operator==(const Clip&) const = default;
+  };
+
+  int batch = 20;
+  double learning_rate = 3e-4;
+  std::array<double, 2> betas{0.9, 0.999};
+  double epsilon = 1e-6;
+  Clip clip;
+  double reverse_probability = 0.5;   ///< of showing a triplet backwards in time
+  std::vector<TrainingStage> stages;  ///< as the file lists them; see Config::stages()
+
+  bool operator==(const TrainingConfig&) const = default;
+};
+
+/// Reads the object's members over the defaults, stages over these and `rooms`; throws Error naming file and
+/// key.
+TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms);
+/// Of each stage's rooms only what differs from `rooms` is written.
+nlohmann::ordered_json write_training_config(const TrainingConfig& config, const RoomsConfig& rooms);
+
+}  // namespace vkopple

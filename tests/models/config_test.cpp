@@ -1,0 +1,162 @@
+#include "models/config.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "models/presets.h"
+#include "models/strict_json.h"
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+/// The message with which a configuration is refused; fails where it is accepted.
+std::string refusal(const std::string& json) {
+  try {
+    Config::parse(json, "run.json");
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << "accepted: " << json;
+  return {};
+}
+
+TEST(Config, DefaultsAreThePublishedModel) {
+  const Config c = Config::parse("{}", "run.json");
+  EXPECT_EQ(c, Config{});
+  EXPECT_EQ(c, Config::load("full"));
+  EXPECT_EQ(c.model.height, 128);
+  EXPECT_EQ(c.model.dropout[2], 0.0005);
+  EXPECT_EQ(c.training.clip.depth, 2.5);
+  EXPECT_EQ(c.rooms.shapes.size(), kRoomShapeNames.size());
+}
+
+TEST(Config, EveryPresetRoundTripsExactly) {
+  EXPECT_EQ(preset_names(), (std::vector<std::string_view>{"full", "small", "tiny"}));
+  for (const std::string_view name : preset_names()) {
+    const Config c = Config::load(std::string(name));
+    EXPECT_EQ(Config::parse(c.to_json(), "again"), c) << c.to_json();
+    EXPECT_EQ(Config::parse(c.to_json(), "again").to_json(), c.to_json());
+  }
+}
+
+TEST(Config, UnroundNumbersRoundTrip) {
+  Config c;
+  c.model.fov = 0.1 + 0.2;
+  c.training.learning_rate = 1.0 / 3;
+  c.training.epsilon = 1e-7 / 3;
+  c.rooms.size = {0.1 / 3, 2.0 / 3};
+  c.rooms.size[0] += 0.1;
+  EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
+}
+
+TEST(Config, SmallLearnsDepthFirst) {
+  const Config c = Config::load("small");
+  ASSERT_EQ(c.stages().size(), 2U);
+  const TrainingStage depth = c.stages()[0];
+  EXPECT_EQ(depth.networks, std::vector<Network>{Network::kDepth});
+  EXPECT_FALSE(depth.learns(Network::kObject));
+  EXPECT_EQ(depth.hypotheses, Hypotheses::kBackground);
+  EXPECT_EQ(depth.steps, 2500);
+  EXPECT_EQ(depth.batch, 16);
+  EXPECT_EQ(depth.rooms.speed, 0.2);
+  EXPECT_EQ(depth.rooms.objects, c.rooms.objects);
+  EXPECT_FALSE(c.stages()[1].steps);
+  EXPECT_EQ(c.stages()[1].rooms, c.rooms);
+  EXPECT_EQ(c.stages()[1].learning_rate, c.training.learning_rate);
+}
+
+TEST(Config, WithoutStagesOneTrainsEverything) {
+  const Config c =
+      Config::parse(R"({"training": {"batch": 3, "learning_rate": 0.5}, "rooms": {"objects": 2}})", "x");
+  ASSERT_EQ(c.stages().size(), 1U);
+  const TrainingStage all = c.stages()[0];
+  EXPECT_TRUE(all.learns(Network::kDepth) && all.learns(Network::kObject) && all.learns(Network::kImagination));
+  EXPECT_EQ(all.batch, 3);
+  EXPECT_EQ(all.learning_rate, 0.5);
+  EXPECT_EQ(all.rooms.objects, 2);
+}
+
+TEST(Config, FixtureMetadataIsAModel) {
+  const ModelConfig c = ModelConfig::parse(
+      R"({"height": 32, "width": 32, "fov": 1.5707963267948966, "slots": 3, "bins": 120, "identity": 10, "code": 64,
+          "depth_width": 2, "object_width": 4, "imagine_width": 1, "lstm": 16, "max_depth": 7.2, "max_height": 5.0, "beta": 1.0,
+          "reg": 1.0, "warp": false, "relaxed": false, "pose_loss": "js", "dropout": [0, 0, 0]})",
+      "fixture");
+  EXPECT_EQ(c.fov, ModelConfig{}.fov);
+  EXPECT_EQ(c.imagine_width, 1);
+  EXPECT_FALSE(c.warp);
+  EXPECT_EQ(c.pose_loss, PoseLoss::kJs);
+  EXPECT_EQ(c.dropout[0], 0);
+}
+
+TEST(Config, RefusalsNameFileKeyAndRange) {
+  EXPECT_EQ(refusal(R"({"model": {"height": 0}})"),
+            "run.json: model.height is 0; give a whole number from 4 to 4096");
+  EXPECT_EQ(refusal(R"({"model": {"slots": "3"}})"),
+            "run.json: model.slots is \"3\"; give a whole number from 1 to 32");
+  EXPECT_EQ(refusal(R"({"model": {"slots": 2.5}})"),
+            "run.json: model.slots is 2.5; give a whole number from 1 to 32");
+  EXPECT_EQ(refusal(R"({"model": {"pose_loss": "l2"}})"),
+            "run.json: model.pose_loss is \"l2\"; give one of kl, js");
+  EXPECT_EQ(refusal(R"({"training": {"clip": {"depth": -1}}})"),
+            "run.json: training.clip.depth is -1; give a number from 1e-09 to 1000000000");
+  EXPECT_EQ(refusal(R"({"training": {"clip": {"depht": 1}}})"),
+            "run.json: training.clip.depht is no key; the keys here are depth, object, imagination");
+  EXPECT_EQ(refusal(R"({"rooms": {"shapes": ["cube", "cube"]}})"),
+            "run.json: rooms.shapes has cube twice; keep one");
+  EXPECT_EQ(refusal(R"({"training": {"stages": [{"steps": 5, "rooms": {"size": [0.1]}}]}})"),
+            "run.json: training.stages[0].rooms.size is [0.1]; give a list of 2 numbers from 0.05 to 1");
+  EXPECT_EQ(refusal(R"({"model": 3})"), "run.json: model is 3; give an object {...}");
+  EXPECT_EQ(refusal("[]"), "run.json: the text is []; give an object {...}");
+}
+
+TEST(Config, RefusesWhatCannotBe) {
+  EXPECT_NE(refusal(R"({"model": {"relaxed": true}})").find("not built yet"), std::string::npos);
+  EXPECT_NE(refusal(R"({"model": {"code": 4, "identity": 5}})").find("model.identity"), std::string::npos);
+  EXPECT_NE(refusal(R"({"model": {"slots": 18446744073709551615}})").find("model.slots"), std::string::npos);
+  EXPECT_NE(refusal(R"({"model": {"warp": 1}})").find("true or false"), std::string::npos);
+  EXPECT_NE(refusal(R"({"rooms": {"size": [0.5, 0.25]}})").find("rooms.size"), std::string::npos);
+  EXPECT_NE(refusal(R"({"rooms": {"shapes": []}})").find("rooms.shapes"), std::string::npos);
+  EXPECT_NE(refusal(R"({"training": {"stages": [{"name": "a"}, {"name": "b"}]}})").find("stages[0].steps"),
+            std::string::npos);
+  EXPECT_NE(
+      refusal(R"({"training": {"stages": [{"name": "a", "steps": 1}, {"name": "a"}]}})").find("stages[1].name"),
+      std::string::npos);
+  EXPECT_NE(refusal(R"({"training": {"stages": [{"name": "../a"}]}})").find("stages[0].name"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"training": {"learning_rate": 1e999}})").find("run.json"), std::string::npos);
+}
+
+TEST(Config, RefusesDamagedText) {
+  EXPECT_EQ(refusal(R"({"model": {"height": 32, "height": 64}})"),
+            "run.json: key model.height appears twice; keep one");
+  EXPECT_NE(refusal(R"({"model": )").find("not valid JSON"), std::string::npos);
+  EXPECT_NE(refusal("").find("not valid JSON"), std::string::npos);
+  EXPECT_NE(refusal(std::string(100000, '[')).find("nested deeper"), std::string::npos);
+  refusal("{\"a\\nb\": 1}");
+  refusal("{\"\xff\": 1}");
+}
+
+TEST(Config, LoadTellsPresetsFromFiles) {
+  try {
+    Config::load("smal");
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(), "smal: no such file, nor a preset; the presets are full, small, tiny");
+  }
+  const std::string path = testing::TempDir() + "vkopple_config_test.json";
+  std::ofstream(path) << R"({"model": {"height": 48}})";
+  EXPECT_EQ(Config::load(path).model.height, 48);
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 21);
+  EXPECT_THROW(Config::load(path), Error);
+  std::filesystem::remove(path);
+  EXPECT_THROW(Config::load(testing::TempDir()), Error);
+}
+
+}  // namespace
+}  // namespace vkopple

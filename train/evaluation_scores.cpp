@@ -1,0 +1,122 @@
+#include "train/evaluation_scores.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+constexpr double kGoodIou = 0.5;
+
+const LabelledLocation* find(std::span<const LabelledLocation> objects, std::int32_t label) {
+  const auto found =
+      std::find_if(objects.begin(), objects.end(), [&](const auto& o) { return o.label == label; });
+  return found == objects.end() ? nullptr : &*found;
+}
+
+double angle(const LabelledLocation& object) { return std::atan2(object.x, object.y); }
+double distance(const LabelledLocation& object) { return std::hypot(object.x, object.y); }
+
+}  // namespace
+
+void EvaluationScores::Mean::add(const std::optional<double>& value) {
+  if (!value) return;
+  sum_ += *value;
+  ++count_;
+}
+
+std::optional<double> EvaluationScores::Mean::value() const {
+  if (count_ == 0) return std::nullopt;
+  return sum_ / static_cast<double>(count_);
+}
+
+void EvaluationScores::add(const EvaluatedImage& image) {
+  if (image.true_depth.size() != image.predicted_depth.size()) {
+    throw Error(fmt::format("depth maps of {} and {} pixels can't be compared", image.true_depth.size(),
+                            image.predicted_depth.size()));
+  }
+  const auto finite = [](float depth) { return std::isfinite(depth); };
+  if (!std::all_of(image.predicted_depth.begin(), image.predicted_depth.end(), finite)) {
+    throw Error("an inferred depth is not a finite number; the model's weights are unusable");
+  }
+  const auto ari = ari_foreground(image.true_labels, image.predicted_labels);
+  const auto matches = match_entities(image.true_labels, image.predicted_labels);
+  ++images_;
+  if (!ari) ++skipped_;
+  ari_fg_.add(ari);
+  if (object_count(image.true_labels) >= 2) ari_fg_multi_.add(ari);
+  iou_.add(mean_iou(matches));
+  iou_objects_.add(mean_iou_objects(matches));
+  add_depth(image);
+  add_locations(image, matches);
+}
+
+void EvaluationScores::add_depth(const EvaluatedImage& image) {
+  Correlation here;
+  for (std::size_t i = 0; i < image.true_depth.size(); ++i) {
+    const double truth = image.true_depth[i], predicted = image.predicted_depth[i];
+    if (!std::isfinite(truth) || truth <= 0) continue;
+    here.add(truth, predicted);
+    depth_pooled_.add(truth, predicted);
+  }
+  depth_r_.add(here.r());
+}
+
+void EvaluationScores::add_locations(const EvaluatedImage& image, std::span<const Match> matches) {
+  for (const Match& match : matches) {
+    if (match.true_label <= 0 || !match.predicted_label) continue;
+    const LabelledLocation* truth = find(image.true_objects, match.true_label);
+    const LabelledLocation* predicted = find(image.predicted_objects, *match.predicted_label);
+    if (truth == nullptr || predicted == nullptr) continue;
+    angle_.add(angle(*truth), angle(*predicted));
+    distance_.add(distance(*truth), distance(*predicted));
+    if (match.iou <= kGoodIou) continue;
+    angle_good_.add(angle(*truth), angle(*predicted));
+    distance_good_.add(distance(*truth), distance(*predicted));
+  }
+}
+
+Json EvaluationScores::to_json() const {
+  const auto value = [](const std::optional<double>& score) { return score ? Json(*score) : Json(nullptr); };
+  return {{"ari_fg", value(ari_fg())},
+          {"ari_fg_multi", value(ari_fg_multi())},
+          {"iou", value(iou())},
+          {"iou_objects", value(iou_objects())},
+          {"depth_r", value(depth_r())},
+          {"depth_r_pooled", value(depth_r_pooled())},
+          {"angle_r", value(angle_r())},
+          {"distance_r", value(distance_r())},
+          {"angle_r_good", value(angle_r_good())},
+          {"distance_r_good", value(distance_r_good())},
+          {"images", images_},
+          {"skipped", skipped_}};
+}
+
+std::string EvaluationScores::to_table() const {
+  struct Row {
+    const char* name;
+    std::optional<double> value;
+  };
+  const std::array<Row, 10> rows{{{"ARI-fg", ari_fg()},
+                                  {"ARI-fg, two objects or more", ari_fg_multi()},
+                                  {"IoU", iou()},
+                                  {"IoU of objects", iou_objects()},
+                                  {"depth r, mean over images", depth_r()},
+                                  {"depth r, all pixels", depth_r_pooled()},
+                                  {"angle r", angle_r()},
+                                  {"distance r", distance_r()},
+                                  {"angle r, IoU > 0.5", angle_r_good()},
+                                  {"distance r, IoU > 0.5", distance_r_good()}}};
+  std::string text;
+  for (const Row& row : rows) {
+    text += fmt::format("{:<28}{:>8}\n", row.name, row.value ? fmt::format("{:.3f}", *row.value) : "-");
+  }
+  return text + fmt::format("{:<28}{:>8}\n{:<28}{:>8}\n", "images", images_, "  without foreground", skipped_);
+}
+
+}  // namespace vkopple

@@ -1,0 +1,290 @@
+#include "graph/checks/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "runtime/transfer.h"
+
+namespace vkopple {
+namespace {
+
+/// Most elements of one input whose derivative is taken numerically; larger tensors are sampled.
+constexpr size_t kMostProbes = 240;
+constexpr double kStep = 1e-5;
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+std::vector<float> as_words(const TensorSpec& spec, const HostTensor& tensor) {
+  std::vector<float> words(tensor.values.size());
+  for (size_t i = 0; i < words.size(); ++i)
+    words[i] = spec.dtype == DType::kU32 ? std::bit_cast<float>(static_cast<uint32_t>(tensor.values[i]))
+                                         : static_cast<float>(tensor.values[i]);
+  return to_layout(spec, words);
+}
+
+HostTensor from_words(const TensorSpec& spec, const std::vector<float>& stored) {
+  HostTensor tensor(spec.shape);
+  const auto values = from_layout(spec, stored);
+  for (size_t i = 0; i < values.size(); ++i)
+    tensor.values[i] = spec.dtype == DType::kU32 ? static_cast<double>(std::bit_cast<uint32_t>(values[i]))
+                                                 : static_cast<double>(values[i]);
+  return tensor;
+}
+
+/// Uniform in [low, high), the same on every machine.
+double uniform(std::mt19937& random, double low, double high) {
+  return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
+}
+
+/// Compares so that a NaN on either side gives a NaN, which no limit lets pass.
+Deviation compare(const std::vector<double>& got, const std::vector<double>& want) {
+  double worst = 0;
+  double largest = 0;
+  double difference2 = 0;
+  double want2 = 0;
+  for (size_t i = 0; i < want.size(); ++i) {
+    const double d = std::abs(got[i] - want[i]);
+    if (!(d <= worst)) worst = std::isnan(worst) ? worst : d;
+    largest = std::max(largest, std::abs(want[i]));
+    difference2 += d * d;
+    want2 += want[i] * want[i];
+  }
+  // A reference that is zero throughout leaves the absolute error as the measure.
+  const double scale = largest > 1e-9 ? largest : 1.0;
+  const double norm = want2 > 1e-18 ? std::sqrt(want2) : 1.0;
+  return {worst / scale, std::sqrt(difference2) / norm};
+}
+
+class Bench {
+ public:
+  Bench(const Device& device, const CheckCase& check)
+      : device_(device), check_(check), op_(*check.op), arena_(device, MemoryKind::kDevice, "check") {
+    result_.op = op_.name();
+    result_.label = check.label;
+  }
+
+  CheckResult run() {
+    draw_inputs();
+    specs_ = op_.infer(check_.inputs);
+    needs_ = op_.needs(check_.inputs, device_.caps());
+    run_forward();
+    const bool any = std::any_of(wanted_.begin(), wanted_.end(), [](bool w) { return w; });
+    if (any) run_backward();
+    return std::move(result_);
+  }
+
+ private:
+  void draw_inputs() {
+    std::mt19937 random(1234);
+    for (size_t i = 0; i < check_.inputs.size(); ++i) {
+      HostTensor tensor(check_.inputs[i].shape);
+      const auto range = i < check_.ranges.size() ? check_.ranges[i] : std::pair(-1.0, 1.0);
+      for (double& v : tensor.values) v = uniform(random, range.first, range.second);
+      x_.push_back(std::move(tensor));
+      wanted_.push_back(op_.differentiable(i) && check_.inputs[i].dtype == DType::kF32);
+    }
+    if (check_.prepare) check_.prepare(x_);
+    for (HostTensor& tensor : x_)
+      for (double& v : tensor.values) v = static_cast<double>(static_cast<float>(v));
+  }
+
+  Operand place(const TensorSpec& spec) {
+    const Operand operand{spec, arena_.allocate(spec.bytes())};
+    write(operand, std::vector<float>(spec.bytes() / 4, kNaN));
+    return operand;
+  }
+  void write(const Operand& operand, const std::vector<float>& words) {
+    upload_values<float>(device_, operand.slice, words);
+  }
+  std::vector<float> read(const Operand& operand) { return download_values<float>(device_, operand.slice); }
+  Slice scratch(uint64_t bytes) {
+    if (bytes == 0) return {};
+    return place(row_major({static_cast<int64_t>((bytes + 3) / 4)})).slice;
+  }
+
+  void fail(const std::string& message) { result_.failures.push_back(message); }
+
+  void judge(Deviation& total, const std::string& what, const std::vector<double>& got,
+             const std::vector<double>& want) {
+    const Deviation d = compare(got, want);
+    if (!(d.worst <= kWorstLimit && d.l2 <= kL2Limit)) {
+      size_t at = 0;
+      for (size_t i = 0; i < want.size(); ++i)
+        if (!(std::abs(got[i] - want[i]) <= std::abs(got[at] - want[at]))) at = i;
+      fail(fmt::format("{}: worst {:.2e}, L2 {:.2e}; element {} is {:.8g} and should be {:.8g}", what, d.worst,
+                       d.l2, at, got[at], want[at]));
+    }
+    if (!(d.worst <= total.worst)) total.worst = d.worst;
+    if (!(d.l2 <= total.l2)) total.l2 = d.l2;
+  }
+
+  void require_zero_padding(const std::string& what, const Operand& operand) {
+    if (operand.spec.layout != Layout::kChannels4) return;
+    const auto stored = read(operand);
+    const auto again = to_layout(operand.spec, from_layout(operand.spec, stored));
+    for (size_t i = 0; i < stored.size(); ++i)
+      if (!(stored[i] == again[i]) && again[i] == 0.0F) {
+        fail(fmt::format("{}: padding lane at word {} holds {}, not zero", what, i,
+                         static_cast<double>(stored[i])));
+        return;
+      }
+  }
+
+  void run_forward() {
+    for (size_t i = 0; i < x_.size(); ++i) {
+      input_.push_back(place(check_.inputs[i]));
+      write(input_.back(), as_words(check_.inputs[i], x_[i]));
+    }
+    for (const TensorSpec& spec : specs_) output_.push_back(place(spec));
+    for (const TensorSpec& spec : needs_.saved) saved_.push_back(place(spec));
+    Recorder recorder(device_);
+    op_.record_forward(recorder, {input_, output_, saved_, scratch(needs_.forward_scratch)});
+    recorder.finish()->run();
+    const HostTensors want = check_.reference(x_);
+    size_t next = 0;
+    for (const Operand& y : output_) {
+      judge(result_.forward, fmt::format("output {}", next), from_words(y.spec, read(y)).values,
+            want.at(next).values);
+      require_zero_padding(fmt::format("output {}", next), y);
+      ++next;
+    }
+    for (size_t i = 0; i < x_.size(); ++i)
+      if (op_.mutates(i))
+        judge(result_.forward, fmt::format("updated input {}", i),
+              from_words(input_[i].spec, read(input_[i])).values, want.at(next++).values);
+  }
+
+  /// The scalar sum of r · y whose gradient is checked; r is fixed.
+  double objective(const HostTensors& x) const {
+    const HostTensors y = check_.reference(x);
+    double sum = 0;
+    for (size_t o = 0; o < cotangent_.size(); ++o)
+      for (size_t i = 0; i < cotangent_[o].values.size(); ++i) sum += cotangent_[o].values[i] * y[o].values[i];
+    return sum;
+  }
+
+  std::vector<size_t> probes(size_t elements) const {
+    std::vector<size_t> chosen;
+    if (elements <= kMostProbes) {
+      for (size_t i = 0; i < elements; ++i) chosen.push_back(i);
+    } else {
+      std::mt19937 random(99);
+      for (size_t i = 0; i < kMostProbes; ++i) chosen.push_back(random() % elements);
+    }
+    return chosen;
+  }
+
+  std::vector<Operand> record_backward(const std::vector<Operand>& dx, uint8_t accumulate) {
+    const std::vector<uint8_t> flags(dx.size(), accumulate);
+    Recorder recorder(device_);
+    op_.record_backward(recorder, {input_, output_, saved_, dy_, dx, flags, scratch(needs_.backward_scratch)});
+    recorder.finish()->run();
+    return dx;
+  }
+
+  void poison_unneeded() {
+    const auto poison = [&](const std::vector<Operand>& operands, uint32_t mask) {
+      for (size_t i = 0; i < operands.size() && i < 32; ++i)
+        if ((mask >> i & 1) == 0) write(operands[i], std::vector<float>(operands[i].spec.bytes() / 4, kNaN));
+    };
+    poison(input_, needs_.inputs_for_backward);
+    poison(output_, needs_.outputs_for_backward);
+  }
+
+  void run_backward() {
+    std::mt19937 random(77);
+    for (const Operand& y : output_) {
+      HostTensor r(y.spec.shape);
+      for (double& v : r.values) v = static_cast<double>(static_cast<float>(uniform(random, -1, 1)));
+      dy_.push_back(place(y.spec));
+      write(dy_.back(), as_words(y.spec, r));
+      cotangent_.push_back(std::move(r));
+    }
+    poison_unneeded();
+    std::vector<Operand> dx;
+    for (size_t i = 0; i < x_.size(); ++i)
+      dx.push_back(wanted_[i] ? place(check_.inputs[i]) : Operand{check_.inputs[i], {}});
+    record_backward(dx, 0);
+    std::vector<HostTensor> first;
+    for (size_t i = 0; i < x_.size(); ++i) {
+      first.push_back(wanted_[i] ? from_words(dx[i].spec, read(dx[i])) : HostTensor());
+      if (!wanted_[i]) continue;
+      check_gradient(i, first[i]);
+      require_zero_padding(fmt::format("gradient {}", i), dx[i]);
+    }
+    check_accumulation(dx, first);
+  }
+
+  void check_gradient(size_t input, const HostTensor& got) {
+    HostTensors x = x_;
+    std::vector<double> want;
+    std::vector<double> have;
+    for (size_t at : probes(got.values.size())) {
+      const double centre = x[input].values[at];
+      x[input].values[at] = centre + kStep;
+      const double up = objective(x);
+      x[input].values[at] = centre - kStep;
+      const double down = objective(x);
+      x[input].values[at] = centre;
+      want.push_back((up - down) / (2 * kStep));
+      have.push_back(got.values[at]);
+    }
+    judge(result_.backward, fmt::format("gradient {}", input), have, want);
+  }
+
+  void check_accumulation(const std::vector<Operand>& dx, const std::vector<HostTensor>& first) {
+    std::mt19937 random(55);
+    std::vector<HostTensor> before;
+    for (size_t i = 0; i < dx.size(); ++i) {
+      before.emplace_back();
+      if (!wanted_[i]) continue;
+      before[i] = HostTensor(dx[i].spec.shape);
+      for (double& v : before[i].values) v = static_cast<double>(static_cast<float>(uniform(random, -1, 1)));
+      write(dx[i], as_words(dx[i].spec, before[i]));
+    }
+    record_backward(dx, 1);
+    for (size_t i = 0; i < dx.size(); ++i) {
+      if (!wanted_[i]) continue;
+      for (size_t k = 0; k < before[i].values.size(); ++k) before[i].values[k] += first[i].values[k];
+      judge(result_.backward, fmt::format("accumulated gradient {}", i),
+            from_words(dx[i].spec, read(dx[i])).values, before[i].values);
+    }
+  }
+
+  const Device& device_;
+  const CheckCase& check_;
+  const Op& op_;
+  Arena arena_;
+  CheckResult result_;
+  HostTensors x_;
+  std::vector<bool> wanted_;
+  std::vector<TensorSpec> specs_;
+  Needs needs_;
+  std::vector<Operand> input_;
+  std::vector<Operand> output_;
+  std::vector<Operand> saved_;
+  std::vector<Operand> dy_;
+  HostTensors cotangent_;
+};
+
+}  // namespace
+
+CheckResult run_check(const Device& device, const CheckCase& check) {
+  CheckResult failed{
+      .op = std::string(check.op->name()), .label = check.label, .forward = {}, .backward = {}, .failures = {}};
+  try {
+    return Bench(device, check).run();
+  } catch (const std::exception& error) {
+    failed.failures.emplace_back(error.what());
+    return failed;
+  }
+}
+
+}  // namespace vkopple

@@ -1,0 +1,306 @@
+#include "graph/executor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "graph/plan.h"
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "runtime/transfer.h"
+
+namespace vkopple {
+namespace {
+
+constexpr uint64_t kBlockBytes = uint64_t{1} << 30;
+
+bool in_mask(uint32_t mask, size_t i) { return i >= 32 || (mask >> i & 1) != 0; }
+
+}  // namespace
+
+/// Decides where every tensor lies: kept ones in an arena or a group, the rest by lifetime in shared blocks.
+/// Time counts forward nodes first, then backward steps.
+class Executor::Layouter {
+ public:
+  explicit Layouter(Executor& executor) : e_(executor), graph_(*executor.graph_) {
+    e_.data_.resize(graph_.value_count());
+    e_.gradients_.resize(graph_.value_count());
+    e_.node_memory_.resize(graph_.nodes().size());
+    data_life_.resize(graph_.value_count());
+    gradient_life_.resize(graph_.value_count());
+  }
+
+  void run() {
+    place_kept();
+    follow_forward();
+    follow_backward();
+    place_shared();
+  }
+
+ private:
+  struct Life {
+    int64_t first = -1;
+    int64_t last = -1;
+    void touch(int64_t time) {
+      first = first < 0 ? time : std::min(first, time);
+      last = std::max(last, time);
+    }
+  };
+  struct Pending {
+    MemoryRequest request;
+    Slice* slice;
+    uint64_t bytes;
+  };
+
+  size_t root(int id) const { return static_cast<size_t>(graph_.info(id).root); }
+  int64_t backward_time(size_t step) const { return static_cast<int64_t>(graph_.nodes().size() + step); }
+
+  void place_kept() {
+    for (size_t id = 0; id < graph_.value_count(); ++id) {
+      const auto& info = graph_.info(static_cast<int>(id));
+      if (info.root != static_cast<int>(id)) continue;
+      switch (info.role) {
+        case Role::kParameter:
+        case Role::kState:
+        case Role::kGradient:
+          e_.data_[id] = e_.groups_->get(info.name, info.spec.bytes());
+          break;
+        case Role::kInput:
+          e_.data_[id] = e_.kept_->allocate(info.spec.bytes());
+          break;
+        case Role::kIntermediate:
+          if (info.kept) e_.data_[id] = e_.kept_->allocate(info.spec.bytes());
+          break;
+      }
+    }
+    for (int id : e_.backward_plan_.zero_first)
+      e_.gradients_[static_cast<size_t>(id)] = e_.data_[static_cast<size_t>(graph_.gradient_of(id))];
+  }
+
+  void follow_forward() {
+    for (size_t n = 0; n < graph_.nodes().size(); ++n) {
+      const Node& node = graph_.nodes()[n];
+      const auto time = static_cast<int64_t>(n);
+      for (int id : node.inputs) data_life_[root(id)].touch(time);
+      for (int id : node.outputs) data_life_[root(id)].touch(time);
+      want(e_.needs_[n].forward_scratch, {time, time}, e_.node_memory_[n].forward_scratch);
+    }
+  }
+
+  void follow_backward() {
+    const auto& steps = e_.backward_plan_.steps;
+    for (size_t s = 0; s < steps.size(); ++s) {
+      const auto& step = steps[s];
+      const Node& node = graph_.nodes()[step.node];
+      const Needs& needs = e_.needs_[step.node];
+      const int64_t time = backward_time(s);
+      for (size_t i = 0; i < node.inputs.size(); ++i) {
+        if (in_mask(needs.inputs_for_backward, i)) data_life_[root(node.inputs[i])].touch(time);
+        if (step.wants[i] != 0) gradient_life_[root(node.inputs[i])].touch(time);
+      }
+      for (size_t i = 0; i < node.outputs.size(); ++i) {
+        if (in_mask(needs.outputs_for_backward, i)) data_life_[root(node.outputs[i])].touch(time);
+        gradient_life_[root(node.outputs[i])].touch(time);
+      }
+      want(needs.backward_scratch, {time, time}, e_.node_memory_[step.node].backward_scratch);
+      auto& saved = e_.node_memory_[step.node].saved;
+      for (const TensorSpec& spec : needs.saved) saved.push_back({spec, {}});
+      for (auto& operand : saved)
+        want(operand.spec.bytes(), {static_cast<int64_t>(step.node), time}, operand.slice);
+    }
+    if (e_.loss_) gradient_life_[root(e_.loss_.id())].touch(backward_time(0));
+  }
+
+  void want(uint64_t bytes, Life life, Slice& slice) {
+    if (bytes > 0) pending_.push_back({{bytes, life.first, life.last}, &slice, bytes});
+  }
+
+  void place_shared() {
+    for (size_t id = 0; id < graph_.value_count(); ++id) {
+      const uint64_t bytes = graph_.info(static_cast<int>(id)).spec.bytes();
+      if (data_life_[id].first >= 0 && !e_.data_[id]) want(bytes, data_life_[id], e_.data_[id]);
+      if (gradient_life_[id].first >= 0 && !e_.gradients_[id])
+        want(bytes, gradient_life_[id], e_.gradients_[id]);
+    }
+    std::vector<MemoryRequest> requests;
+    for (const Pending& p : pending_) requests.push_back(p.request);
+    const Caps& caps = e_.device_->caps();
+    const MemoryPlan plan =
+        plan_memory(requests, std::min(kBlockBytes, caps.max_allocation_bytes), caps.offset_alignment);
+    if (plan.total_bytes() > caps.memory_bytes)
+      throw Error(
+          fmt::format("activations and gradients need {} MiB, {} has {}; use a smaller --batch or image size",
+                      plan.total_bytes() >> 20, caps.name, caps.memory_bytes >> 20));
+    for (uint64_t bytes : plan.block_bytes)
+      e_.blocks_.push_back(std::make_unique<Buffer>(*e_.device_, bytes, MemoryKind::kDevice, "activations"));
+    for (size_t i = 0; i < pending_.size(); ++i)
+      *pending_[i].slice = {e_.blocks_[plan.placements[i].block].get(), plan.placements[i].offset,
+                            pending_[i].bytes};
+    e_.shared_bytes_ = plan.total_bytes();
+  }
+
+  Executor& e_;
+  const Graph& graph_;
+  std::vector<Life> data_life_;      ///< by root
+  std::vector<Life> gradient_life_;  ///< by root
+  std::vector<Pending> pending_;
+};
+
+Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
+    : device_(&device), graph_(&graph), loss_(options.loss), groups_(std::move(options.groups)) {
+  if (!groups_) groups_ = std::make_shared<GroupStore>(device);
+  kept_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "inputs and outputs", uint64_t{4} << 20);
+  if (loss_) backward_plan_ = plan_backward(graph, loss_, options.trained);
+  for (const Node& node : graph.nodes()) {
+    std::vector<TensorSpec> specs;
+    for (int id : node.inputs) specs.push_back(graph.info(id).spec);
+    needs_.push_back(node.op->needs(specs, device.caps()));
+    forward_flop_ += needs_.back().forward_flop;
+  }
+  for (const auto& step : backward_plan_.steps) backward_flop_ += needs_[step.node].backward_flop;
+  Layouter(*this).run();
+  record_forward(options.profile);
+  if (loss_) record_backward(options.profile);
+  if (!graph.updates().empty()) record_update(options.profile);
+}
+
+Executor::~Executor() = default;
+
+Slice Executor::slice(Value value) const {
+  const auto& info = graph_->info(value.id());
+  return data_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes());
+}
+
+Operand Executor::operand(int value) const { return {graph_->info(value).spec, slice({*graph_, value})}; }
+
+Operand Executor::gradient_operand(int value) const {
+  const auto& info = graph_->info(value);
+  return {info.spec, gradients_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes())};
+}
+
+std::vector<Operand> Executor::operands(const std::vector<int>& values) const {
+  std::vector<Operand> all;
+  for (int id : values) all.push_back(operand(id));
+  return all;
+}
+
+void Executor::record_forward(bool profile) {
+  Recorder recorder(*device_, profile);
+  for (size_t n = 0; n < graph_->nodes().size(); ++n) {
+    const Node& node = graph_->nodes()[n];
+    const auto x = operands(node.inputs);
+    const auto y = operands(node.outputs);
+    recorder.begin_section(node.op->name());
+    recorder.expect_work(needs_[n].forward_flop);
+    std::vector<Operand> saved = node_memory_[n].saved;
+    if (saved.empty())  // inference, or no gradient comes this way
+      for (const TensorSpec& spec : needs_[n].saved) saved.push_back({spec, {}});
+    node.op->record_forward(recorder, {x, y, saved, node_memory_[n].forward_scratch});
+    recorder.end_section();
+  }
+  forward_ = recorder.finish();
+}
+
+void Executor::record_backward(bool profile) {
+  Recorder recorder(*device_, profile);
+  for (int root : backward_plan_.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
+  recorder.fill(gradient_operand(loss_.id()).slice, std::bit_cast<uint32_t>(1.0F));
+  for (const BackwardStep& step : backward_plan_.steps) {
+    const Node& node = graph_->nodes()[step.node];
+    for (int root : step.zero_roots) recorder.fill(gradients_[static_cast<size_t>(root)]);
+    const auto x = operands(node.inputs);
+    const auto y = operands(node.outputs);
+    std::vector<Operand> dy;
+    std::vector<Operand> dx;
+    for (int id : node.outputs) dy.push_back(gradient_operand(id));
+    for (size_t i = 0; i < node.inputs.size(); ++i)
+      dx.push_back(step.wants[i] != 0 ? gradient_operand(node.inputs[i])
+                                      : Operand{graph_->info(node.inputs[i]).spec, {}});
+    const NodeMemory& memory = node_memory_[step.node];
+    recorder.begin_section(node.op->name());
+    recorder.expect_work(needs_[step.node].backward_flop);
+    node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
+    recorder.end_section();
+  }
+  backward_ = recorder.finish();
+}
+
+void Executor::record_update(bool profile) {
+  Recorder recorder(*device_, profile);
+  for (const Node& node : graph_->updates()) {
+    const auto x = operands(node.inputs);
+    recorder.begin_section(node.op->name());
+    node.op->record_forward(recorder, {x, {}, {}, {}});
+    recorder.end_section();
+  }
+  update_ = recorder.finish();
+}
+
+void Executor::forward() { forward_->run(); }
+
+void Executor::backward() {
+  if (!backward_) throw Error("this executor was made without a loss");
+  backward_->run();
+}
+
+void Executor::update() {
+  if (!update_) throw Error("the graph has no update nodes");
+  update_->run();
+}
+
+void Executor::require_host_access(Value value, const char* what) const {
+  const auto& root = graph_->info(graph_->info(value.id()).root);
+  if (root.role == Role::kIntermediate && !root.kept)
+    throw Error(fmt::format("can't {} an intermediate value that the graph does not keep", what));
+}
+
+void Executor::write(Value value, std::span<const float> values) {
+  require_host_access(value, "write");
+  const auto stored = to_layout(value.spec(), values);
+  upload_values<float>(*device_, slice(value), stored);
+}
+
+void Executor::write_words(Value value, std::span<const uint32_t> values) {
+  require_host_access(value, "write");
+  if (static_cast<int64_t>(values.size()) != value.shape().elements())
+    throw Error(
+        fmt::format("{} words were given for a tensor of shape {}", values.size(), value.shape().text()));
+  upload_values<uint32_t>(*device_, slice(value), values);
+}
+
+std::vector<float> Executor::read(Value value) const {
+  require_host_access(value, "read");
+  return from_layout(value.spec(), download_values<float>(*device_, slice(value)));
+}
+
+std::vector<uint32_t> Executor::read_words(Value value) const {
+  require_host_access(value, "read");
+  return download_values<uint32_t>(*device_, slice(value));
+}
+
+std::vector<float> Executor::read_gradient(Value parameter) const {
+  if (!gradients_[static_cast<size_t>(graph_->info(parameter.id()).root)])
+    throw Error(fmt::format("{} receives no gradient", graph_->info(parameter.id()).name));
+  const Operand gradient = gradient_operand(parameter.id());
+  return from_layout(gradient.spec, download_values<float>(*device_, gradient.slice));
+}
+
+Profile Executor::profile() const {
+  Profile profile;
+  profile.forward = forward_->section_seconds();
+  if (backward_) profile.backward = backward_->section_seconds();
+  if (update_) profile.update = update_->section_seconds();
+  return profile;
+}
+
+uint64_t Executor::total_bytes() const {
+  return shared_bytes_ + kept_->allocated_bytes() + groups_->allocated_bytes();
+}
+
+size_t Executor::dispatches() const {
+  return forward_->dispatches() + (backward_ ? backward_->dispatches() : 0) +
+         (update_ ? update_->dispatches() : 0);
+}
+
+}  // namespace vkopple

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "graph/autodiff.h"
+#include "graph/graph.h"
+#include "runtime/buffer.h"
+#include "runtime/recorder.h"
+
+namespace vkopple {
+
+class Device;
+
+/// Device memory of parameter, gradient and state groups by name. Executors that share a store share their
+/// groups: the graphs of two training stages, or of training and evaluation.
+class GroupStore {
+ public:
+  explicit GroupStore(const Device& device);
+  /// Zeros at first. Throws Error where the group exists with another size.
+  Slice get(const std::string& name, uint64_t bytes);
+  uint64_t allocated_bytes() const { return arena_.allocated_bytes(); }
+
+ private:
+  const Device* device_;
+  Arena arena_;
+  std::map<std::string, Slice> slices_;
+};
+
+struct ExecutorOptions {
+  std::shared_ptr<GroupStore> groups;  ///< null: groups of its own
+  Value loss;                          ///< none: inference, forward alone
+  std::vector<std::string> trained;    ///< parameter groups that receive gradients
+  bool profile = false;                ///< timestamps around every op
+};
+
+/// Seconds, by op, of the last run of each pass; empty without profiling.
+struct Profile {
+  std::map<std::string, double> forward;
+  std::map<std::string, double> backward;
+  std::map<std::string, double> update;
+};
+
+/// Runs a graph on a device: places every tensor, records each pass once, replays it as often as asked.
+class Executor {
+ public:
+  /// The graph must outlive it and gets no further nodes. Throws Error where the device's memory is too small.
+  Executor(const Device& device, Graph& graph, ExecutorOptions options = {});
+  ~Executor();
+
+  void forward();   ///< all nodes
+  void backward();  ///< gradients of the trained groups, from the last forward
+  void update();    ///< the graph's update nodes
+
+  /// Row-major values, converted to the value's layout. For inputs, group members and state. Throws Error on a
+  /// wrong count.
+  void write(Value value, std::span<const float> values);
+  void write_words(Value value, std::span<const uint32_t> values);
+  /// Row-major values of an input, a kept value, or a group's member.
+  std::vector<float> read(Value value) const;
+  std::vector<uint32_t> read_words(Value value) const;
+  /// The gradient of a parameter after backward, row-major.
+  std::vector<float> read_gradient(Value parameter) const;
+  /// Where a value lies. Intermediate values that are not kept share their bytes with others.
+  Slice slice(Value value) const;
+
+  Profile profile() const;
+  uint64_t shared_bytes() const { return shared_bytes_; }  ///< of activations and gradients
+  uint64_t total_bytes() const;                            ///< everything on the device, groups included
+  double forward_flop() const { return forward_flop_; }
+  double backward_flop() const { return backward_flop_; }
+  size_t dispatches() const;
+
+ private:
+  struct NodeMemory {
+    std::vector<Operand> saved;
+    Slice forward_scratch;
+    Slice backward_scratch;
+  };
+  class Layouter;
+  Operand operand(int value) const;
+  Operand gradient_operand(int value) const;
+  std::vector<Operand> operands(const std::vector<int>& values) const;
+  void record_forward(bool profile);
+  void record_backward(bool profile);
+  void record_update(bool profile);
+  void require_host_access(Value value, const char* what) const;
+
+  const Device* device_;
+  Graph* graph_;
+  Value loss_;
+  std::shared_ptr<GroupStore> groups_;
+  std::unique_ptr<Arena> kept_;
+  std::vector<std::unique_ptr<Buffer>> blocks_;
+  std::vector<Slice> data_;       ///< by root value
+  std::vector<Slice> gradients_;  ///< by root value
+  std::vector<NodeMemory> node_memory_;
+  std::vector<Needs> needs_;
+  BackwardPlan backward_plan_;
+  std::unique_ptr<Commands> forward_;
+  std::unique_ptr<Commands> backward_;
+  std::unique_ptr<Commands> update_;
+  uint64_t shared_bytes_ = 0;
+  double forward_flop_ = 0;
+  double backward_flop_ = 0;
+};
+
+}  // namespace vkopple

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace vkopple {
+
+enum class DeviceType { kDiscrete, kIntegrated, kVirtual, kCpu, kOther };
+
+/// How kernels read and write their operands (shaders/include/access.glsl); a build variant of every shader.
+enum class AccessPath {
+  kTexel,    ///< uniform texel buffers, 64-bit stores: ten times as fast on lavapipe
+  kStorage,  ///< storage buffers alone: works everywhere
+};
+
+/// What a device can do, as plain data: kernels are chosen from this, and tests make it up.
+struct Caps {
+  std::string name;
+  std::string driver;  ///< name and version, as the driver gives them
+  std::array<uint8_t, 16> uuid{};
+  std::array<uint8_t, 16> driver_uuid{};
+  uint32_t vendor_id = 0;
+  uint32_t device_id = 0;
+  uint32_t driver_version = 0;
+  uint32_t api_version = 0;
+  DeviceType type = DeviceType::kOther;
+
+  uint64_t memory_bytes = 0;             ///< largest device-local heap
+  uint64_t max_allocation_bytes = 0;     ///< of one vkAllocateMemory
+  uint64_t max_storage_range = 0;        ///< bytes of one storage buffer binding
+  uint64_t max_texel_elements = 0;       ///< elements of one texel buffer view
+  uint64_t offset_alignment = 256;       ///< bytes; suits storage and texel bindings alike
+  uint32_t max_workgroup_size = 128;     ///< invocations
+  std::array<uint32_t, 3> max_groups{};  ///< of one dispatch
+  uint32_t shared_memory_bytes = 16384;
+  uint32_t subgroup_size = 1;
+  float timestamp_period = 0;  ///< nanoseconds a tick, 0 without timestamps
+
+  bool subgroup_shuffle = false;
+  bool subgroup_arithmetic = false;
+  bool int64 = false;
+  bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
+  bool zero_outside = false;      ///< quirk: a texel fetch outside its view gives zeros at no cost (lavapipe)
+  AccessPath access = AccessPath::kStorage;
+
+  bool cpu() const { return type == DeviceType::kCpu; }
+  /// Invocations of a workgroup for kernels that treat every element alike.
+  uint32_t flat_workgroup() const { return cpu() ? 64 : 128; }
+  /// Largest tensor in bytes that one binding reaches.
+  uint64_t max_tensor_bytes() const {
+    const uint64_t texel = access == AccessPath::kTexel ? max_texel_elements * 4 : max_storage_range;
+    return texel < max_storage_range ? texel : max_storage_range;
+  }
+};
+
+/// "8c2f…" as 32 hexadecimal digits in the usual 8-4-4-4-12 grouping.
+std::string uuid_text(const std::array<uint8_t, 16>& uuid);
+
+}  // namespace vkopple

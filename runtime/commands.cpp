@@ -1,0 +1,53 @@
+#include "runtime/device.h"
+#include "runtime/recorder.h"
+#include "runtime/vulkan_error.h"
+
+namespace vkopple {
+
+Commands::Commands(const Device& device) : device_(&device) {
+  VkCommandPoolCreateInfo pool{};
+  pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+  pool.queueFamilyIndex = device.queue_family();
+  check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
+  VkFenceCreateInfo fence{};
+  fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  check(vkCreateFence(device.handle(), &fence, nullptr, &fence_), "vkCreateFence");
+  absent_ = std::make_unique<Buffer>(device, 256, MemoryKind::kDevice, "absent operand");
+}
+
+Commands::~Commands() {
+  const VkDevice device = device_->handle();
+  for (VkDescriptorPool pool : descriptor_pools_) vkDestroyDescriptorPool(device, pool, nullptr);
+  if (queries_ != VK_NULL_HANDLE) vkDestroyQueryPool(device, queries_, nullptr);
+  if (fence_ != VK_NULL_HANDLE) vkDestroyFence(device, fence_, nullptr);
+  if (pool_ != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool_, nullptr);
+}
+
+void Commands::run() const {
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  for (size_t i = 0; i < buffers_.size(); ++i) {
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &buffers_[i];
+    const bool last = i + 1 == buffers_.size();
+    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? fence_ : VK_NULL_HANDLE), "vkQueueSubmit");
+  }
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+}
+
+std::map<std::string, double> Commands::section_seconds() const {
+  std::map<std::string, double> seconds;
+  if (sections_.empty()) return seconds;
+  std::vector<uint64_t> ticks(sections_.size() * 2);
+  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, static_cast<uint32_t>(ticks.size()),
+                              ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
+                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
+  const double period = static_cast<double>(device_->caps().timestamp_period) * 1e-9;
+  for (size_t i = 0; i < sections_.size(); ++i)
+    seconds[sections_[i]] += static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * period;
+  return seconds;
+}
+
+}  // namespace vkopple

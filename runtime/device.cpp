@@ -1,0 +1,103 @@
+#include "runtime/device.h"
+
+#include <cstdlib>
+#include <vector>
+
+#include "runtime/pipeline.h"
+#include "runtime/vulkan_error.h"
+
+namespace vkopple {
+namespace {
+
+uint32_t compute_family(VkPhysicalDevice device) {
+  uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) != 0) return i;
+  throw Error("the device has no compute queue");
+}
+
+}  // namespace
+
+std::filesystem::path default_cache_folder() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
+    return std::filesystem::path(cache) / "vkopple";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return std::filesystem::path(home) / ".cache" / "vkopple";
+  return {};
+}
+
+Device::Device(DeviceOptions options) : instance_(std::move(options.on_message)) {
+  const auto candidates = instance_.candidates();
+  const size_t index = choose_device(candidates, device_selector(options.selector));
+  physical_ = instance_.physical_devices().at(index);
+  caps_ = candidates[index].caps;
+  if (options.access) {
+    if (*options.access == AccessPath::kTexel && !caps_.int64)
+      throw Error("the texel access path needs 64-bit integers in shaders, which " + caps_.name + " lacks");
+    caps_.access = *options.access;
+  }
+  create_logical_device();
+  const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;
+  pipelines_ = std::make_unique<PipelineSet>(*this, options.use_cache ? folder : std::filesystem::path());
+}
+
+void Device::create_logical_device() {
+  queue_family_ = compute_family(physical_);
+  const float priority = 1.0F;
+  VkDeviceQueueCreateInfo queue{};
+  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
+  queue.queueFamilyIndex = queue_family_;
+  queue.queueCount = 1;
+  queue.pQueuePriorities = &priority;
+  VkPhysicalDeviceFeatures supported{};
+  vkGetPhysicalDeviceFeatures(physical_, &supported);
+  VkPhysicalDeviceFeatures features{};
+  features.shaderInt64 = supported.shaderInt64;
+  features.robustBufferAccess = supported.robustBufferAccess;
+  VkDeviceCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.queueCreateInfoCount = 1;
+  info.pQueueCreateInfos = &queue;
+  info.pEnabledFeatures = &features;
+  check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
+  vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+  if (instance_.validates())
+    set_name_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetDeviceProcAddr(device_, "vkSetDebugUtilsObjectNameEXT"));
+}
+
+Device::~Device() {
+  if (device_ == VK_NULL_HANDLE) return;
+  vkDeviceWaitIdle(device_);
+  pipelines_.reset();
+  vkDestroyDevice(device_, nullptr);
+}
+
+void Device::submit_and_wait(VkCommandBuffer commands) const {
+  VkFenceCreateInfo fence_info{};
+  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+  VkFence fence = VK_NULL_HANDLE;
+  check(vkCreateFence(device_, &fence_info, nullptr, &fence), "vkCreateFence");
+  const std::shared_ptr<void> guard(nullptr, [&](void*) { vkDestroyFence(device_, fence, nullptr); });
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &commands;
+  check(vkQueueSubmit(queue_, 1, &submit, fence), "vkQueueSubmit");
+  check(vkWaitForFences(device_, 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+}
+
+void Device::set_name(VkObjectType type, uint64_t handle, const std::string& name) const {
+  if (set_name_ == nullptr) return;
+  VkDebugUtilsObjectNameInfoEXT info{};
+  info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT;
+  info.objectType = type;
+  info.objectHandle = handle;
+  info.pObjectName = name.c_str();
+  set_name_(device_, &info);
+}
+
+}  // namespace vkopple

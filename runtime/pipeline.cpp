@@ -1,0 +1,135 @@
+#include "runtime/pipeline.h"
+
+#include <fmt/format.h>
+
+#include "runtime/device.h"
+#include "runtime/pipeline_cache.h"
+#include "runtime/vulkan_error.h"
+
+namespace vkopple {
+namespace {
+
+/// Specialization constants that access.glsl and subgroup.glsl may use in any shader.
+constexpr uint32_t kZeroOutsideId = 100;
+constexpr uint32_t kSubgroupSizeId = 101;
+constexpr uint32_t kPushConstantBytes = 128;
+
+VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
+  const bool texel =
+      access == AccessPath::kTexel && (kind == BindingKind::kRead4 || kind == BindingKind::kRead1);
+  return texel ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
+
+}  // namespace
+
+PipelineSet::PipelineSet(const Device& device, std::filesystem::path cache_folder) : device_(&device) {
+  std::vector<std::byte> data;
+  if (!cache_folder.empty()) {
+    cache_file_ = cache_folder / pipeline_cache_name(device.caps());
+    data = load_pipeline_cache(cache_file_, device.caps());
+  }
+  VkPipelineCacheCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
+  info.initialDataSize = data.size();
+  info.pInitialData = data.data();
+  check(vkCreatePipelineCache(device.handle(), &info, nullptr, &cache_), "vkCreatePipelineCache");
+  loaded_bytes_ = data.size();
+}
+
+PipelineSet::~PipelineSet() {
+  const VkDevice device = device_->handle();
+  size_t bytes = 0;
+  if (!cache_file_.empty() && !pipelines_.empty() &&
+      vkGetPipelineCacheData(device, cache_, &bytes, nullptr) == VK_SUCCESS && bytes > loaded_bytes_) {
+    std::vector<std::byte> data(bytes);
+    if (vkGetPipelineCacheData(device, cache_, &bytes, data.data()) == VK_SUCCESS)
+      save_pipeline_cache(cache_file_, device_->caps(), std::span(data).first(bytes));
+  }
+  for (const auto& [key, p] : pipelines_) {
+    vkDestroyPipeline(device, p.pipeline, nullptr);
+    vkDestroyPipelineLayout(device, p.layout, nullptr);
+    vkDestroyDescriptorSetLayout(device, p.set_layout, nullptr);
+  }
+  vkDestroyPipelineCache(device, cache_, nullptr);
+}
+
+const Pipeline& PipelineSet::get(std::string_view shader, const std::vector<uint32_t>& constants) {
+  const auto [entry, added] = pipelines_.try_emplace(Key{std::string(shader), constants});
+  if (added) {
+    try {
+      entry->second.shader = &find_shader(shader, device_->caps().access);
+      entry->second.bindings = binding_kinds(*entry->second.shader);
+      create(entry->second, constants);
+    } catch (...) {
+      pipelines_.erase(entry);
+      throw;
+    }
+  }
+  return entry->second;
+}
+
+void PipelineSet::create_layouts(Pipeline& pipeline) const {
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (BindingKind kind : pipeline.bindings) {
+    VkDescriptorSetLayoutBinding binding{};
+    binding.binding = static_cast<uint32_t>(bindings.size());
+    binding.descriptorType = descriptor_type(kind, pipeline.shader->access);
+    binding.descriptorCount = 1;
+    binding.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
+    bindings.push_back(binding);
+  }
+  VkDescriptorSetLayoutCreateInfo set{};
+  set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+  set.bindingCount = static_cast<uint32_t>(bindings.size());
+  set.pBindings = bindings.data();
+  check(vkCreateDescriptorSetLayout(device_->handle(), &set, nullptr, &pipeline.set_layout),
+        "vkCreateDescriptorSetLayout");
+  const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, kPushConstantBytes};
+  VkPipelineLayoutCreateInfo layout{};
+  layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  layout.setLayoutCount = 1;
+  layout.pSetLayouts = &pipeline.set_layout;
+  layout.pushConstantRangeCount = 1;
+  layout.pPushConstantRanges = &push;
+  check(vkCreatePipelineLayout(device_->handle(), &layout, nullptr, &pipeline.layout),
+        "vkCreatePipelineLayout");
+}
+
+void PipelineSet::create(Pipeline& pipeline, const std::vector<uint32_t>& constants) {
+  create_layouts(pipeline);
+  std::vector<uint32_t> values = constants;
+  values.push_back(device_->caps().zero_outside ? 1 : 0);
+  values.push_back(device_->caps().subgroup_size);
+  std::vector<VkSpecializationMapEntry> entries;
+  for (uint32_t i = 0; i < values.size(); ++i) {
+    const auto own = static_cast<uint32_t>(constants.size());
+    const uint32_t id = i < own ? i : (i == own ? kZeroOutsideId : kSubgroupSizeId);
+    entries.push_back({id, i * 4, 4});
+  }
+  VkSpecializationInfo specialization{};
+  specialization.mapEntryCount = static_cast<uint32_t>(entries.size());
+  specialization.pMapEntries = entries.data();
+  specialization.dataSize = values.size() * 4;
+  specialization.pData = values.data();
+
+  VkShaderModuleCreateInfo module_info{};
+  module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  module_info.codeSize = pipeline.shader->code.size_bytes();
+  module_info.pCode = pipeline.shader->code.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device_->handle(), &module_info, nullptr, &module), "vkCreateShaderModule");
+  VkComputePipelineCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+  info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+  info.stage.module = module;
+  info.stage.pName = "main";
+  info.stage.pSpecializationInfo = &specialization;
+  info.layout = pipeline.layout;
+  const VkResult result =
+      vkCreateComputePipelines(device_->handle(), cache_, 1, &info, nullptr, &pipeline.pipeline);
+  vkDestroyShaderModule(device_->handle(), module, nullptr);
+  check(result, fmt::format("vkCreateComputePipelines of {}", pipeline.shader->name));
+}
+
+}  // namespace vkopple

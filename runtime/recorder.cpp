@@ -1,0 +1,250 @@
+#include "runtime/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "runtime/device.h"
+#include "runtime/pipeline.h"
+#include "runtime/vulkan_error.h"
+
+namespace vkopple {
+namespace {
+
+constexpr uint32_t kSetsPerPool = 256;
+constexpr uint32_t kDescriptorsPerSet = 8;
+constexpr uint32_t kMostSections = 16384;
+/// A chunk of this size takes a slow integrated GPU well under a second; watchdogs wait for two or more.
+constexpr double kChunkFlop = 40e9;
+constexpr size_t kChunkDispatches = 512;
+
+void memory_barrier(VkCommandBuffer buffer, VkPipelineStageFlags from, VkAccessFlags written,
+                    VkPipelineStageFlags to, VkAccessFlags used) {
+  VkMemoryBarrier barrier{};
+  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
+  barrier.srcAccessMask = written;
+  barrier.dstAccessMask = used;
+  vkCmdPipelineBarrier(buffer, from, to, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+}
+
+constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+constexpr VkAccessFlags kWritten = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+constexpr VkAccessFlags kUsed = kWritten | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+
+}  // namespace
+
+Recorder::Recorder(const Device& device, bool timestamps)
+    : device_(&device),
+      timestamps_(timestamps && device.caps().timestamp_period > 0),
+      commands_(std::make_unique<Commands>(device)) {
+  if (timestamps_) {
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
+    info.queryCount = 2 * kMostSections;
+    check(vkCreateQueryPool(device.handle(), &info, nullptr, &commands_->queries_), "vkCreateQueryPool");
+  }
+  begin_buffer();
+}
+
+Recorder::~Recorder() = default;
+
+const Caps& Recorder::caps() const { return device_->caps(); }
+
+void Recorder::begin_buffer() {
+  VkCommandBufferAllocateInfo allocate{};
+  allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+  allocate.commandPool = commands_->pool_;
+  allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  allocate.commandBufferCount = 1;
+  check(vkAllocateCommandBuffers(device_->handle(), &allocate, &buffer_), "vkAllocateCommandBuffers");
+  VkCommandBufferBeginInfo begin{};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(buffer_, &begin), "vkBeginCommandBuffer");
+  if (timestamps_ && commands_->buffers_.empty())
+    vkCmdResetQueryPool(buffer_, commands_->queries_, 0, 2 * kMostSections);
+  // Whatever was submitted before (another chunk, another program, the host's writes) is done and seen from
+  // here on.
+  memory_barrier(buffer_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWritten | VK_ACCESS_HOST_WRITE_BIT, kWork,
+                 kUsed);
+  pending_reads_.clear();
+  pending_writes_.clear();
+  chunk_dispatches_ = 0;
+  chunk_flop_ = 0;
+}
+
+void Recorder::end_buffer() {
+  memory_barrier(buffer_, kWork, kWritten, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  check(vkEndCommandBuffer(buffer_), "vkEndCommandBuffer");
+  commands_->buffers_.push_back(buffer_);
+  buffer_ = VK_NULL_HANDLE;
+}
+
+void Recorder::order(std::span<const Slice> reads, std::span<const Slice> writes) {
+  const auto meets = [](std::span<const Slice> a, std::span<const Slice> b) {
+    return std::any_of(a.begin(), a.end(), [&](const Slice& x) {
+      return std::any_of(b.begin(), b.end(), [&](const Slice& y) { return x.overlaps(y); });
+    });
+  };
+  if (meets(writes, pending_writes_) || meets(writes, pending_reads_) || meets(reads, pending_writes_)) {
+    memory_barrier(buffer_, kWork, kWritten, kWork, kUsed);
+    ++commands_->barriers_;
+    pending_reads_.clear();
+    pending_writes_.clear();
+  }
+  pending_reads_.insert(pending_reads_.end(), reads.begin(), reads.end());
+  pending_writes_.insert(pending_writes_.end(), writes.begin(), writes.end());
+}
+
+VkDescriptorSet Recorder::allocate_set(const Pipeline& pipeline) {
+  if (sets_left_ == 0) {
+    const std::array<VkDescriptorPoolSize, 2> sizes{
+        {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, kSetsPerPool * kDescriptorsPerSet},
+         {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kSetsPerPool * kDescriptorsPerSet}}};
+    VkDescriptorPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    info.maxSets = kSetsPerPool;
+    info.poolSizeCount = static_cast<uint32_t>(sizes.size());
+    info.pPoolSizes = sizes.data();
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    check(vkCreateDescriptorPool(device_->handle(), &info, nullptr, &pool), "vkCreateDescriptorPool");
+    commands_->descriptor_pools_.push_back(pool);
+    sets_left_ = kSetsPerPool;
+  }
+  VkDescriptorSetAllocateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  info.descriptorPool = commands_->descriptor_pools_.back();
+  info.descriptorSetCount = 1;
+  info.pSetLayouts = &pipeline.set_layout;
+  VkDescriptorSet set = VK_NULL_HANDLE;
+  const VkResult result = vkAllocateDescriptorSets(device_->handle(), &info, &set);
+  if (result == VK_ERROR_OUT_OF_POOL_MEMORY || result == VK_ERROR_FRAGMENTED_POOL) {
+    // Shaders with many bindings use a pool up before its sets are.
+    sets_left_ = 0;
+    return allocate_set(pipeline);
+  }
+  check(result, "vkAllocateDescriptorSets");
+  --sets_left_;
+  return set;
+}
+
+VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Slice> bindings) {
+  const VkDescriptorSet set = allocate_set(pipeline);
+  const auto& kinds = pipeline.bindings;
+  std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
+  std::vector<VkBufferView> views(bindings.size());
+  std::vector<VkWriteDescriptorSet> writes(bindings.size());
+  for (uint32_t i = 0; i < bindings.size(); ++i) {
+    const Slice slice = bindings[i] ? bindings[i] : commands_->absent_->whole();
+    auto& write = writes[i];
+    write = {};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = set;
+    write.dstBinding = i;
+    write.descriptorCount = 1;
+    const bool reads = kinds[i] == BindingKind::kRead4 || kinds[i] == BindingKind::kRead1;
+    if (reads && pipeline.shader->access == AccessPath::kTexel) {
+      const bool wide = kinds[i] == BindingKind::kRead4;
+      write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+      const uint64_t bytes = wide ? slice.bytes / 16 * 16 : slice.bytes;
+      views[i] =
+          slice.buffer->view(wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R32_SFLOAT, slice.offset, bytes);
+      write.pTexelBufferView = &views[i];
+    } else {
+      write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+      buffers[i] = {slice.buffer->handle(), slice.offset, slice.bytes};
+      write.pBufferInfo = &buffers[i];
+    }
+  }
+  vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+  return set;
+}
+
+void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& constants,
+                        std::span<const Slice> bindings, const Push& push, Groups groups) {
+  const Pipeline& pipeline = device_->pipelines().get(shader, constants);
+  const auto& kinds = pipeline.bindings;
+  if (bindings.size() != kinds.size())
+    throw Error(fmt::format("shader {} has {} bindings, {} were given", shader, kinds.size(), bindings.size()));
+  for (size_t i = 0; i < 3; ++i) {
+    if (groups[i] == 0) return;
+    if (groups[i] > caps().max_groups[i])
+      throw Error(
+          fmt::format("shader {} needs {} workgroups in one direction, {} allows {}; use a smaller --batch "
+                      "or image size",
+                      shader, groups[i], caps().name, caps().max_groups[i]));
+  }
+  std::vector<Slice> reads;
+  std::vector<Slice> writes;
+  for (size_t i = 0; i < bindings.size(); ++i) {
+    if (!bindings[i]) continue;
+    if (bindings[i].bytes > caps().max_storage_range)
+      throw Error(
+          fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; use a smaller --batch or "
+                      "image size",
+                      shader, i, bindings[i].bytes >> 20, caps().name, caps().max_storage_range >> 20));
+    (kinds[i] == BindingKind::kWrite ? writes : reads).push_back(bindings[i]);
+  }
+  order(reads, writes);
+  const VkDescriptorSet set = make_set(pipeline, bindings);
+  vkCmdBindPipeline(buffer_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
+  vkCmdBindDescriptorSets(buffer_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0, nullptr);
+  if (push.bytes() > 0)
+    vkCmdPushConstants(buffer_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, push.bytes(), push.data());
+  vkCmdDispatch(buffer_, groups[0], groups[1], groups[2]);
+  ++commands_->dispatches_;
+  ++chunk_dispatches_;
+}
+
+void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initializer_list<Slice> bindings,
+                             const Push& push, const std::vector<uint32_t>& constants) {
+  const uint32_t local = caps().flat_workgroup();
+  std::vector<uint32_t> all{local};
+  all.insert(all.end(), constants.begin(), constants.end());
+  const uint64_t groups = (count + local - 1) / local;
+  const uint64_t columns = std::min<uint64_t>(groups, caps().max_groups[0]);
+  const uint64_t rows = columns == 0 ? 0 : (groups + columns - 1) / columns;
+  dispatch(shader, all, std::span(bindings.begin(), bindings.size()), push,
+           {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), 1});
+}
+
+void Recorder::fill(const Slice& slice, uint32_t word) {
+  order({}, std::span(&slice, 1));
+  vkCmdFillBuffer(buffer_, slice.buffer->handle(), slice.offset, (slice.bytes + 3) / 4 * 4, word);
+}
+
+void Recorder::copy(const Slice& from, const Slice& to) {
+  if (from.bytes != to.bytes)
+    throw Error(fmt::format("a copy of {} bytes into {} bytes was recorded", from.bytes, to.bytes));
+  order(std::span(&from, 1), std::span(&to, 1));
+  const VkBufferCopy region{from.offset, to.offset, from.bytes};
+  vkCmdCopyBuffer(buffer_, from.buffer->handle(), to.buffer->handle(), 1, &region);
+}
+
+void Recorder::begin_section(std::string_view name) {
+  if (chunk_flop_ > kChunkFlop || chunk_dispatches_ > kChunkDispatches) {
+    end_buffer();
+    begin_buffer();
+  }
+  in_section_ = timestamps_ && commands_->sections_.size() < kMostSections;
+  if (!in_section_) return;
+  vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands_->queries_,
+                      static_cast<uint32_t>(2 * commands_->sections_.size()));
+  commands_->sections_.emplace_back(name);
+}
+
+void Recorder::end_section() {
+  if (!in_section_) return;
+  vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands_->queries_,
+                      static_cast<uint32_t>(2 * commands_->sections_.size() - 1));
+  in_section_ = false;
+}
+
+void Recorder::expect_work(double flop) { chunk_flop_ += flop; }
+
+std::unique_ptr<Commands> Recorder::finish() {
+  end_buffer();
+  return std::move(commands_);
+}
+
+}  // namespace vkopple

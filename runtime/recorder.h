@@ -1,0 +1,133 @@
+#pragma once
+
+#include <vulkan/vulkan.h>
+
+#include <array>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "runtime/buffer.h"
+#include "runtime/caps.h"
+#include "runtime/shader_library.h"
+
+namespace vkopple {
+
+class Device;
+struct Pipeline;
+
+/// Push constants of a dispatch: a plain struct laid out as the shader's block (scalars of 4 bytes), at most
+/// 128 bytes.
+class Push {
+ public:
+  Push() = default;
+  template <class T>
+  requires std::is_trivially_copyable_v<T> Push(const T& values)
+      : bytes_(sizeof(T)) {  // NOLINT(google-explicit-constructor): reads as the block itself
+    static_assert(sizeof(T) <= 128 && sizeof(T) % 4 == 0);
+    std::memcpy(data_.data(), &values, sizeof(T));
+  }
+  uint32_t bytes() const { return bytes_; }
+  const void* data() const { return data_.data(); }
+
+ private:
+  std::array<std::byte, 128> data_{};
+  uint32_t bytes_ = 0;
+};
+
+using Groups = std::array<uint32_t, 3>;
+
+/// What a recorder left: command buffers, replayed as often as wanted. The slices it names must outlive it.
+class Commands {
+ public:
+  explicit Commands(const Device& device);
+  ~Commands();
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  /// Submits every chunk in order and waits for the last one.
+  void run() const;
+  /// Seconds that each section took in the last run, summed by name; empty unless recorded with timestamps.
+  std::map<std::string, double> section_seconds() const;
+  size_t dispatches() const { return dispatches_; }
+  size_t barriers() const { return barriers_; }
+  size_t chunks() const { return buffers_.size(); }
+
+ private:
+  friend class Recorder;
+  const Device* device_;
+  VkCommandPool pool_ = VK_NULL_HANDLE;
+  VkQueryPool queries_ = VK_NULL_HANDLE;
+  VkFence fence_ = VK_NULL_HANDLE;
+  std::vector<VkCommandBuffer> buffers_;
+  std::vector<VkDescriptorPool> descriptor_pools_;
+  std::vector<std::string> sections_;  ///< section i has queries 2i and 2i + 1
+  std::unique_ptr<Buffer> absent_;     ///< bound where an optional operand is absent
+  size_t dispatches_ = 0;
+  size_t barriers_ = 0;
+};
+
+/// Records dispatches, fills and copies. It knows what each one reads and writes and places a barrier exactly
+/// where bytes that overlap are written by one side; callers never do. Long recordings are cut into chunks that
+/// are submitted one by one, so that no watchdog sees a submission of many seconds.
+class Recorder {
+ public:
+  explicit Recorder(const Device& device, bool timestamps = false);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  const Device& device() const { return *device_; }
+  const Caps& caps() const;
+
+  /// Runs `shader` (a name of the shader library). constants[i] sets constant_id i; id 0 is local_size_x.
+  /// bindings[i] is binding i, an empty slice where the kernel's optional operand is absent.
+  void dispatch(std::string_view shader, const std::vector<uint32_t>& constants,
+                std::span<const Slice> bindings, const Push& push, Groups groups);
+  void dispatch(std::string_view shader, const std::vector<uint32_t>& constants,
+                std::initializer_list<Slice> bindings, const Push& push, Groups groups) {
+    dispatch(shader, constants, std::span(bindings.begin(), bindings.size()), push, groups);
+  }
+  /// One invocation for each of `count` elements, numbered by flat_index() of access.glsl; invocations from
+  /// `count` on must return. `constants` start at constant_id 1.
+  void dispatch_flat(std::string_view shader, uint64_t count, std::initializer_list<Slice> bindings,
+                     const Push& push, const std::vector<uint32_t>& constants = {});
+
+  /// Sets every 32-bit word.
+  void fill(const Slice& slice, uint32_t word = 0);
+  void copy(const Slice& from, const Slice& to);
+
+  /// Brackets what one op records, for timestamps.
+  void begin_section(std::string_view name);
+  void end_section();
+  /// Tells how much work follows (multiply-adds count two), for cutting into chunks.
+  void expect_work(double flop);
+
+  /// Ends the recording.
+  std::unique_ptr<Commands> finish();
+
+ private:
+  void begin_buffer();
+  void end_buffer();
+  void order(std::span<const Slice> reads, std::span<const Slice> writes);
+  VkDescriptorSet make_set(const Pipeline& pipeline, std::span<const Slice> bindings);
+  VkDescriptorSet allocate_set(const Pipeline& pipeline);
+
+  const Device* device_;
+  bool timestamps_;
+  std::unique_ptr<Commands> commands_;
+  VkCommandBuffer buffer_ = VK_NULL_HANDLE;
+  std::vector<Slice> pending_reads_;
+  std::vector<Slice> pending_writes_;
+  uint32_t sets_left_ = 0;
+  size_t chunk_dispatches_ = 0;
+  double chunk_flop_ = 0;
+  bool in_section_ = false;
+};
+
+}  // namespace vkopple

@@ -1,0 +1,45 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "graph/checks/check.h"
+#include "tests/support/test_device.h"
+
+namespace vkopple {
+namespace {
+
+class OpCheckTest : public testing::TestWithParam<OpChecks> {};
+
+void run_all(const Device& device, const OpChecks& checks) {
+  for (const CheckCase& check : checks.cases) {
+    const CheckResult result = run_check(device, check);
+    for (const auto& failure : result.failures)
+      ADD_FAILURE() << checks.op << " " << check.label << ": " << failure;
+  }
+}
+
+TEST_P(OpCheckTest, MatchesItsReference) { run_all(test_device(), GetParam()); }
+
+TEST_P(OpCheckTest, MatchesItsReferenceOnTheOtherAccessPath) {
+  if (other_access_device() == nullptr)
+    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  run_all(*other_access_device(), GetParam());
+}
+
+std::string test_name(const testing::TestParamInfo<OpChecks>& test) { return std::string(test.param.op); }
+
+INSTANTIATE_TEST_SUITE_P(Ops, OpCheckTest, testing::ValuesIn(all_checks()), test_name);
+
+TEST(OpChecksTest, EveryOpHasOne) {
+  const auto checks = all_checks();
+  for (std::string_view op : all_ops()) {
+    const auto found =
+        std::find_if(checks.begin(), checks.end(), [&](const OpChecks& c) { return c.op == op; });
+    ASSERT_NE(found, checks.end()) << op << " has no check: add graph/checks/" << op << ".cpp";
+    EXPECT_FALSE(found->cases.empty()) << op << " has a check without cases";
+  }
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -1,0 +1,33 @@
+#include "tests/support/test_device.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+void fail_test(const std::string& message) { ADD_FAILURE() << "validation: " << message; }
+
+}  // namespace
+
+const Device& test_device() {
+  static const Device device({.selector = "", .on_message = fail_test, .access = {}, .cache_folder = {}});
+  return device;
+}
+
+const Device* other_access_device() {
+  static const auto device = []() -> std::unique_ptr<Device> {
+    const bool texel = test_device().caps().access == AccessPath::kTexel;
+    if (!texel && !test_device().caps().int64) return nullptr;
+    return std::make_unique<Device>(DeviceOptions{.selector = "",
+                                                  .on_message = fail_test,
+                                                  .access = texel ? AccessPath::kStorage : AccessPath::kTexel,
+                                                  .cache_folder = {}});
+  }();
+  return device.get();
+}
+
+}  // namespace vkopple

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/device.h"
+
+namespace vkopple {
+
+/// The device that tests share (VKOPPLE_DEVICE chooses it), with the validation layer loaded. Every message of
+/// the layer fails the test that runs at that moment.
+const Device& test_device();
+/// The same device with the other access path; null where it can't have it.
+const Device* other_access_device();
+
+}  // namespace vkopple

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace vkopple {
+
+/// One value per pixel, row by row from the top left.
+template <class T>
+struct Plane {
+  int height = 0, width = 0;
+  std::vector<T> pixels;
+
+  Plane() = default;
+  Plane(int rows, int columns)
+      : height(rows),
+        width(columns),
+        pixels(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {}
+};
+
+/// Colours in [0, 1], planar: all red, then all green, then all blue; (3, height, width).
+struct RgbImage {
+  int height = 0, width = 0;
+  std::vector<float> pixels;
+
+  RgbImage() = default;
+  RgbImage(int rows, int columns)
+      : height(rows),
+        width(columns),
+        pixels(3 * static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns)) {}
+};
+
+/// What a data set stores beside a picture.
+struct DepthAndIds {
+  Plane<float> depth;        ///< Euclidean distance, scene units
+  Plane<std::uint32_t> ids;  ///< 0 background, 1.. objects
+};
+
+/// To any size, each axis on its own: where it shrinks, an output pixel is the mean over the area it covers;
+/// where it grows, linear interpolation between pixel centres.
+RgbImage resize(const RgbImage& image, int height, int width);
+Plane<float> resize(const Plane<float>& plane, int height, int width);
+
+/// The pixel whose area holds the output pixel's centre: for labels, which can't be mixed.
+Plane<std::uint32_t> resize_nearest(const Plane<std::uint32_t>& plane, int height, int width);
+
+}  // namespace vkopple

@@ -2,7 +2,7 @@
 
     python make_fixtures.py OUT.safetensors [--seed 0] [--batch 6] [--mode train|eval] [--set height=32 ...]
 
-The ones in tests/fixtures, rigid and train:
+Those in tests/fixtures, rigid and train:
     python make_fixtures.py OUT --seed 20 --batch 4 --mode eval --set height=32 width=32 depth_width=2 object_width=4 imagine_width=1 lstm=16
     python make_fixtures.py OUT --seed 17 --batch 8 --mode train --set height=32 width=32 depth_width=2 object_width=4 imagine_width=2 lstm=16
 

@@ -90,21 +90,20 @@ class Down(nn.Module):
 
 
 class Up(nn.Module):
-    """Transposed convolution, crop to the skip's size, [concatenate the skip], convolution."""
+    """Transposed convolution, crop to the size of the same level on the way down, [concatenate that], convolution."""
 
     def __init__(self, cin, cout, norm, drop, kernel=3, skip=True, residual=False):
         super().__init__()
         pad = dict(padding=1, output_padding=1) if kernel == 3 else {}
         self.up = block(nn.ConvTranspose2d(cin, cout, kernel, stride=2, **pad), norm(cout) if norm else None, drop)
         self.conv = block(nn.Conv2d(cout * (2 if skip else 1), cout, 3, padding=1), norm(cout) if norm else None, drop)
-        self.residual = residual
+        self.skip, self.residual = skip, residual
 
-    def forward(self, x, skip=None):
+    def forward(self, x, level):
         u = self.up(x)
-        if skip is not None:
-            dy, dx = u.shape[2] - skip.shape[2], u.shape[3] - skip.shape[3]
-            u = u[:, :, dy // 2:u.shape[2] - (dy - dy // 2), dx // 2:u.shape[3] - (dx - dx // 2)]
-        out = self.conv(u if skip is None else torch.cat([skip, u], 1))
+        dy, dx = u.shape[2] - level.shape[2], u.shape[3] - level.shape[3]
+        u = u[:, :, dy // 2:u.shape[2] - (dy - dy // 2), dx // 2:u.shape[3] - (dx - dx // 2)]
+        out = self.conv(torch.cat([level, u], 1) if self.skip else u)
         return out + u if self.residual else out
 
 
@@ -213,7 +212,7 @@ class ImaginationNet(nn.Module):
         x = skips.pop()
         x = x + self.linear(condition).reshape(x.shape)
         for i in range(6):
-            x = getattr(self, f"up{i + 1}")(x, skips.pop() if i < 3 else None)
+            x = getattr(self, f"up{i + 1}")(x, skips.pop())
         return self.outc(x)
 
 

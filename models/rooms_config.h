@@ -19,11 +19,10 @@ enum class RoomShape {
   kTorus,
   kPrism,
   kEllipsoid,
-  kCapsule
+  kDome
 };
 inline constexpr std::array<std::string_view, 10> kRoomShapeNames{
-    "cube",    "cylinder", "lying_cylinder", "sphere",    "cone",
-    "pyramid", "torus",    "prism",          "ellipsoid", "capsule"};
+    "cube", "cylinder", "lying_cylinder", "sphere", "cone", "pyramid", "torus", "prism", "ellipsoid", "dome"};
 
 /// Periodic patterns with hard edges, octaves of smooth noise, or for each surface one or the other.
 enum class RoomTextures { kPeriodic, kSmooth, kMixed };

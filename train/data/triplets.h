@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vkopple {
+
+/// Where an object truly is in a triplet's middle frame.
+struct ObjectTruth {
+  std::array<double, 3> location{};  ///< of its middle in the camera's frame: x right, y forward, z up
+  uint64_t pixels = 0;               ///< that show it, by their centres; 0: out of sight
+};
+
+/// A batch of triplets of frames, on the host. Truth is known of made data only; what is unknown is empty.
+struct TripletBatch {
+  int batch = 0, height = 0, width = 0;
+  std::array<std::vector<float>, 3>
+      images;  ///< a frame each: (batch, 3, height, width) red, green, blue in [0, 1]
+  std::array<std::vector<float>, 3>
+      poses;                    ///< a frame each: (batch, 6) x, y, z, yaw, pitch, roll of the camera
+  std::vector<float> depth;     ///< (batch, height, width) of the middle frame, Euclidean; empty where unknown
+  std::vector<uint32_t> label;  ///< likewise: 0 background, i + 1 object i; empty where unknown
+  std::vector<std::vector<ObjectTruth>> objects;  ///< of each triplet; empty where unknown
+
+  /// Shows triplet `index` backwards in time.
+  void reverse(int index);
+};
+
+/// Hands out batches of triplets by number. The same step gives the same batch, whatever was asked for before.
+class TripletSource {
+ public:
+  virtual ~TripletSource() = default;
+  virtual TripletBatch read(uint64_t step) = 0;
+};
+
+/// Every evenly strided triplet of `frames` frames, counted from 0: (0,1,2), (1,2,3), ..., (0,2,4), ...
+std::vector<std::array<int, 3>> strided_triplets(int frames);
+
+}  // namespace vkopple

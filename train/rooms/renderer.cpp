@@ -1,0 +1,78 @@
+#include "train/rooms/renderer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "runtime/transfer.h"
+#include "train/rooms/scene_pack.h"
+
+namespace vkopple {
+namespace {
+
+/// As the shader's block.
+struct RaycastPush {
+  int32_t views, height, width;
+  int32_t view_rows;
+  float focal;
+};
+
+uint64_t scene_bytes(std::size_t objects, int views) {
+  return packed_view_size(objects) * static_cast<uint64_t>(views) * sizeof(float);
+}
+
+}  // namespace
+
+double Lens::focal() const { return height / (2 * std::tan(fov / 2)); }
+
+double Lens::half_view() const { return std::atan(width / (2 * focal())); }
+
+RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views)
+    : device_(&device),
+      lens_(lens),
+      objects_(static_cast<std::size_t>(rooms.objects)),
+      views_(views),
+      scene_(device, scene_bytes(objects_, views), MemoryKind::kDevice, "rooms scene"),
+      image_(device, pixels() * 4 * sizeof(float), MemoryKind::kDevice, "rooms image"),
+      depth_(device, pixels() * sizeof(float), MemoryKind::kDevice, "rooms depth"),
+      label_(device, pixels() * sizeof(uint32_t), MemoryKind::kDevice, "rooms label") {
+  Recorder recorder(device);
+  const RaycastPush push{views, lens.height, lens.width, static_cast<int32_t>(packed_view_size(objects_) / 4),
+                         static_cast<float>(lens.focal())};
+  recorder.dispatch_flat("room_raycast", pixels(), {scene_.whole(), image(), depth(), label()}, push,
+                         {static_cast<uint32_t>(rooms.supersample)});
+  commands_ = recorder.finish();
+}
+
+void RoomRenderer::render(const std::vector<View>& views) {
+  if (views.size() != static_cast<std::size_t>(views_)) {
+    throw Error(fmt::format("rooms: {} views to draw where {} were announced", views.size(), views_));
+  }
+  std::vector<float> packed;
+  packed.reserve(packed_view_size(objects_) * views.size());
+  for (const View& view : views) {
+    if (view.scene->objects.size() != objects_) {
+      throw Error(fmt::format("rooms: a scene of {} objects where {} were announced",
+                              view.scene->objects.size(), objects_));
+    }
+    pack_view(*view.scene, view.frame, packed);
+  }
+  upload_values<float>(*device_, scene_.whole(), packed);
+  commands_->run();
+}
+
+std::vector<float> RoomRenderer::planes(const Slice& range) const {
+  const std::vector<float> pixels = download_values<float>(*device_, range);
+  const std::size_t area = lens_.pixels(), views = pixels.size() / (4 * area);
+  std::vector<float> result(views * 3 * area);
+  for (std::size_t view = 0; view < views; ++view) {
+    for (std::size_t i = 0; i < area; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) result[(view * 3 + c) * area + i] = pixels[(view * area + i) * 4 + c];
+    }
+  }
+  return result;
+}
+
+}  // namespace vkopple

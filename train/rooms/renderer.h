@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "models/model_config.h"
+#include "runtime/buffer.h"
+#include "runtime/recorder.h"
+#include "train/rooms/scene.h"
+
+namespace vkopple {
+
+class Device;
+
+/// Size and angle of view of the pictures.
+struct Lens {
+  int height = 0;
+  int width = 0;
+  double fov = 0;  ///< vertical, radians
+
+  explicit Lens(const ModelConfig& model) : Lens(model.height, model.width, model.fov) {}
+  Lens(int height_pixels, int width_pixels, double vertical)
+      : height(height_pixels), width(width_pixels), fov(vertical) {}
+  double focal() const;      ///< pixels
+  double half_view() const;  ///< half the horizontal angle of view
+  uint64_t pixels() const { return static_cast<uint64_t>(height) * static_cast<uint64_t>(width); }
+};
+
+/// One frame of one scene.
+struct View {
+  const Scene* scene = nullptr;
+  int frame = 0;
+};
+
+/// Draws views of rooms on the device; pixels stay there until asked for. Made for a number of views, drawn any
+/// number of times.
+class RoomRenderer {
+ public:
+  /// Every scene drawn must have as many objects as `rooms`. Throws Error where the device's memory is too
+  /// small.
+  RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views);
+
+  /// Draws `views`, as many as this was made for, and waits.
+  void render(const std::vector<View>& views);
+
+  /// (views, height, width) pixels of 4 floats: red, green, blue in [0, 1], 0. As a tensor: (views, 3, height,
+  /// width) in NC4HW4.
+  Slice image() { return image_.whole(); }
+  /// (views, height, width) floats: Euclidean distance along the ray through the pixel's centre.
+  Slice depth() { return depth_.whole(); }
+  /// (views, height, width) uint32: 0 background, i + 1 object i, at the pixel's centre.
+  Slice label() { return label_.whole(); }
+
+  /// Downloads a range of image() that holds whole views, as (views, 3, height, width).
+  std::vector<float> planes(const Slice& range) const;
+
+  const Device& device() const { return *device_; }
+  const Lens& lens() const { return lens_; }
+  int views() const { return views_; }
+
+ private:
+  uint64_t pixels() const { return static_cast<uint64_t>(views_) * lens_.pixels(); }
+
+  const Device* device_;
+  Lens lens_;
+  std::size_t objects_;
+  int views_;
+  Buffer scene_, image_, depth_, label_;
+  std::unique_ptr<Commands> commands_;
+};
+
+}  // namespace vkopple

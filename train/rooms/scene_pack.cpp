@@ -1,0 +1,50 @@
+#include "train/rooms/scene_pack.h"
+
+#include <cmath>
+
+namespace vkopple {
+namespace {
+
+constexpr int kLying = 8;
+
+class Rows {
+ public:
+  explicit Rows(std::vector<float>& out) : out_(&out) {}
+  void add(double x, double y, double z, double w) {
+    for (const double v : {x, y, z, w}) out_->push_back(static_cast<float>(v));
+  }
+  void add(const Vec3& v, double w) { add(v[0], v[1], v[2], w); }
+
+  void add(const Material& m) {
+    add(m.colours[0], m.pattern);
+    add(m.colours[1], m.period);
+    add(m.colours[2], 0);
+    add(m.phase, 0);
+    add(m.turn[1], m.turn[2], m.turn[3], m.turn[0]);
+  }
+
+ private:
+  std::vector<float>* out_;
+};
+
+}  // namespace
+
+void pack_view(const Scene& scene, int frame, std::vector<float>& out) {
+  Rows rows(out);
+  const CameraPose& camera = scene.cameras.at(static_cast<std::size_t>(frame));
+  rows.add(camera.position, static_cast<double>(scene.objects.size()));
+  const auto rotation = camera.rotation();
+  for (std::size_t i = 0; i < 3; ++i) rows.add(rotation[i], scene.light[i]);
+  rows.add(kRoomHalf, kRoomHeight, 0, 0);
+  for (const RoomObject& object : scene.objects) {
+    const Solid& solid = object.solid;
+    rows.add(object.position(frame), solid.kind + (solid.lies ? kLying : 0));
+    rows.add(std::cos(object.yaw(frame)), std::sin(object.yaw(frame)), solid.reach, solid.h);
+    rows.add(solid.a, solid.b, solid.s0, solid.s1);
+    rows.add(solid.e, solid.c, 0, 0);
+    rows.add(object.material);
+  }
+  for (const Material* material : {&scene.wall, &scene.floor, &scene.ceiling}) rows.add(*material);
+}
+
+}  // namespace vkopple

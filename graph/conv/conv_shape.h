@@ -5,9 +5,9 @@
 namespace vkopple {
 
 /// The sizes of a square-kernel convolution, whichever of its three products is computed:
-///   y[n, co, yo, xo] = Σ ci,ky,kx x[n, ci, yo·stride + ky·dilation − padding, xo·stride + kx·dilation −
-///   padding] · w[co, ci, ky, kx]
-/// with x zero outside (h, w). x is (n, ci, h, w), y is (n, co, ho, wo), w is (co, ci, kernel, kernel).
+///   y[n, co, yo, xo] = Σ ci,ky,kx  x[n, ci, yi, xi] · w[co, ci, ky, kx]
+///   yi = yo · stride + ky · dilation − padding, xi likewise, x being zero outside (h, w).
+/// x is (n, ci, h, w), y is (n, co, ho, wo), w is (co, ci, kernel, kernel).
 struct ConvShape {
   int64_t n, ci, h, w, co, ho, wo;
   int64_t kernel, stride, padding, dilation;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+
+#include "graph/conv/conv_shape.h"
+#include "graph/tensor.h"
+#include "runtime/recorder.h"
+
+namespace vkopple {
+
+/// The kernels that compute a weight gradient.
+enum class WeightGradientKernel {
+  kAuto,    ///< the fastest that the device can run
+  kSimple,  ///< every shape on every device: pixels over the invocations of a workgroup, sums through shared
+            ///< memory
+};
+
+/// Whether the device can run a kernel on this shape.
+bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel);
+
+/// Bytes that record_weight_gradient() needs.
+uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps,
+                                 WeightGradientKernel kernel = WeightGradientKernel::kAuto);
+
+/// dw[co][ci][ky][kx] (+)= Σ n,yo,xo dy[n,co,yo,xo] · x[n, ci, yo·stride + ky·dilation − padding, …], x zero
+/// outside. x and dy NC4HW4 with zeros in their padding lanes, dw row-major (co, ci, kernel, kernel).
+/// accumulate: 1 adds to dw, 0 overwrites it without reading. Sums run in a fixed order. A transposed
+/// convolution's gradient is the same with its large dy as `x` and its small x as `dy`. Throws Error for a
+/// kernel that can't.
+void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x, Slice dy, Slice dw,
+                            uint32_t accumulate, Slice scratch,
+                            WeightGradientKernel kernel = WeightGradientKernel::kAuto);
+
+/// Bytes that record_bias_gradient() needs; dy is NC4HW4 (n, co, h, w).
+uint64_t bias_gradient_scratch(const TensorSpec& dy, const Caps& caps);
+
+/// db[co] (+)= Σ n,y,x dy[n,co,y,x].
+void record_bias_gradient(Recorder& recorder, const TensorSpec& dy_spec, Slice dy, Slice db,
+                          uint32_t accumulate, Slice scratch);
+
+}  // namespace vkopple

@@ -50,9 +50,6 @@ class ShardWriter::Tar {
     check(archive_write_set_bytes_in_last_block(archive_.get(), 512));
     check(archive_write_open(archive_.get(), this, nullptr, &Tar::write, nullptr));
   }
-  ~Tar() {
-    if (archive_) archive_write_fail(archive_.get());  // else freeing it would write its end
-  }
   Tar(const Tar&) = delete;
   Tar& operator=(const Tar&) = delete;
 
@@ -96,7 +93,7 @@ class ShardWriter::Tar {
                             one_line(why != nullptr ? why : "unknown reason")));
   }
 
-  AtomicFile file_;
+  AtomicFile file_;  // outlives the archive, which writes its end to it even when abandoned
   std::exception_ptr problem_;
   std::unique_ptr<archive, Release> archive_;
 };
@@ -117,20 +114,31 @@ ShardWriter::~ShardWriter() = default;
 
 void ShardWriter::add(const Sample& sample) {
   check_key(sample.key);
+  check_usable();
+  if (keys_.contains(sample.key)) throw Error(fmt::format("the sample {} is given twice", quote(sample.key)));
+  usable_ = false;  // until the sample is whole
   if (!tar_) tar_ = std::make_unique<Tar>(shard_path(folder_, prefix_, shards_));
-  if (!keys_.insert(sample.key).second)
-    throw Error(fmt::format("the sample {} is given twice", quote(sample.key)));
   for (const auto& [extension, bytes] : sample.parts) tar_->add(sample.key + "." + extension, bytes);
-  if (++in_shard_ == samples_per_shard_) finish();
+  usable_ = true;
+  keys_.insert(sample.key);
+  if (keys_.size() == samples_per_shard_) finish();
 }
 
 void ShardWriter::finish() {
+  check_usable();
   if (!tar_) return;
+  usable_ = false;
   tar_->commit();
+  usable_ = true;
   tar_.reset();
   keys_.clear();
-  in_shard_ = 0;
   ++shards_;
+}
+
+void ShardWriter::check_usable() const {
+  if (usable_) return;
+  throw Error(fmt::format("the data set in {} stays incomplete after an earlier error; write it anew",
+                          quote(folder_.string(), 4096)));
 }
 
 }  // namespace vkopple

@@ -47,10 +47,13 @@ class ShardWriter {
  private:
   class Tar;
 
+  void check_usable() const;
+
   std::filesystem::path folder_;
   std::string prefix_;
   std::size_t samples_per_shard_;
-  std::size_t shards_ = 0, in_shard_ = 0;
+  std::size_t shards_ = 0;
+  bool usable_ = true;          ///< false once a sample or shard was left half written
   std::set<std::string> keys_;  ///< of the open shard
   std::unique_ptr<Tar> tar_;
 };

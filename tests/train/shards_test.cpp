@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
 
@@ -128,6 +129,19 @@ TEST_F(Shards, UnfinishedShardLeavesNothing) {
   for (const auto& entry : std::filesystem::directory_iterator(folder_ / "set"))
     names.push_back(entry.path().filename());
   EXPECT_EQ(names, (std::vector<std::string>{"rooms-000000.tar"}));
+}
+
+TEST_F(Shards, FullDiskLeavesNothingAndStopsTheWriter) {
+  ShardWriter writer(folder_ / "set", "rooms", 2);
+  writer.add(sample("a"));
+  {
+    const test::FileSizeLimit limit(100'000);
+    expect_error([&] { writer.add(sample("b", std::string(200'000, 'x'))); },
+                 {"rooms-000000.tar", "free some space"});
+  }
+  expect_error([&] { writer.add(sample("c")); }, {"set", "incomplete"});
+  expect_error([&] { writer.finish(); }, {"set", "incomplete"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "set/rooms-000000.tar"));
 }
 
 TEST_F(Shards, WriterRefuses) {

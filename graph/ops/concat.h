@@ -1,0 +1,26 @@
+#pragma once
+
+#include "graph/graph.h"
+
+namespace vkopple {
+
+/// Joins up to 6 tensors along one axis: any axis row-major, the channels of NC4HW4.
+class Concat : public Op {
+ public:
+  static constexpr size_t kMostInputs = 6;
+  explicit Concat(size_t axis) : axis_(axis) {}
+  std::string_view name() const override { return "concat"; }
+  std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
+  Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
+  void record_forward(Recorder& recorder, const Forward& io) const override;
+  void record_backward(Recorder& recorder, const Backward& io) const override;
+
+ private:
+  void interleave(Recorder& recorder, const Forward& io) const;
+
+  size_t axis_;
+};
+
+Value concat(const std::vector<Value>& xs, size_t axis);
+
+}  // namespace vkopple

@@ -54,6 +54,8 @@ struct CheckCase {
   /// Changes drawn inputs: integers, distributions, distances from a kink. Values are rounded to float
   /// afterwards.
   std::function<void(HostTensors& x)> prepare = {};
+  /// Whether a device can run it, for ops forced to one family of kernels; empty: every device.
+  std::function<bool(const Caps& caps)> runs_on = {};
 };
 
 using CheckList = std::vector<CheckCase>;

@@ -1,0 +1,186 @@
+#include "graph/conv/conv_product.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "graph/conv/conv_tile.h"
+#include "graph/tensor.h"
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+constexpr std::string_view kShuffle = "shuffle";
+constexpr std::string_view kUniform = "uniform";
+
+struct PackPush {
+  int32_t out_channels, in_channels, taps;
+  int32_t transposed, has_bias;
+  int32_t weight_vectors, vectors;
+};
+
+/// As conv_product.comp has it.
+struct ProductPush {
+  int32_t n, in4, out4, h, w, out_h, out_w;
+  int32_t kernel, stride, step, tap_step, phases;
+  int32_t first[2], taps[2], base[2];
+  int32_t tiles, bias;
+};
+
+struct Channels {
+  int64_t in, out;
+};
+
+Channels channels_of(const ConvShape& shape, ConvDirection direction) {
+  if (direction == ConvDirection::kForward) return {shape.ci, shape.co};
+  return {shape.co, shape.ci};
+}
+
+/// Output channels that weights and bias are packed for: whole tiles of any size.
+int64_t packed_channels(int64_t channels) {
+  return (channels + kMostTileChannels - 1) / kMostTileChannels * kMostTileChannels;
+}
+
+PackPush pack_push(const ConvShape& shape, ConvDirection direction, bool has_bias) {
+  const auto [in, out] = channels_of(shape, direction);
+  const int64_t taps = shape.kernel * shape.kernel;
+  const int64_t weights = packed_channels(out) * taps * blocks4(in);
+  return {.out_channels = static_cast<int32_t>(out),
+          .in_channels = static_cast<int32_t>(in),
+          .taps = static_cast<int32_t>(taps),
+          .transposed = direction == ConvDirection::kTransposed ? 1 : 0,
+          .has_bias = has_bias ? 1 : 0,
+          .weight_vectors = static_cast<int32_t>(weights),
+          .vectors = static_cast<int32_t>(weights + packed_channels(out) / 4)};
+}
+
+/// Leaves out taps that read no input for any of the `outputs` rows or columns of a phase: at wide dilations of
+/// small images that is most of them.
+void drop_outside_taps(ProductPush& push, int phase, int64_t outputs, int64_t inputs) {
+  const auto reaches = [&](int64_t base) { return base < inputs && base + (outputs - 1) * push.stride >= 0; };
+  while (push.taps[phase] > 0 && !reaches(push.base[phase])) {
+    push.base[phase] += push.step;
+    push.first[phase] += push.tap_step;
+    --push.taps[phase];
+  }
+  while (push.taps[phase] > 0 && !reaches(push.base[phase] + (push.taps[phase] - 1) * push.step))
+    --push.taps[phase];
+}
+
+void set_forward_taps(ProductPush& push, const ConvShape& s) {
+  push.stride = static_cast<int32_t>(s.stride);
+  push.step = static_cast<int32_t>(s.dilation);
+  push.tap_step = 1;
+  push.phases = 1;
+  push.taps[0] = static_cast<int32_t>(s.kernel);
+  push.base[0] = static_cast<int32_t>(-s.padding);
+}
+
+/// x row xi = phases · row + a receives y row yo of tap ky where xi = yo · stride + ky · dilation − padding, so
+/// where (a + padding − ky · dilation) is a multiple of the stride, which is `phases`.
+void set_transposed_taps(ProductPush& push, const ConvShape& s) {
+  push.stride = 1;
+  push.phases = static_cast<int32_t>(s.stride);
+  const bool every_tap = s.dilation % s.stride == 0;  // of one phase, the others having none
+  push.tap_step = every_tap ? 1 : push.phases;
+  push.step = static_cast<int32_t>(-push.tap_step * s.dilation / s.stride);
+  for (int64_t a = 0; a < s.stride; ++a) {
+    int64_t first = 0;
+    while (first < push.tap_step && (a + s.padding - first * s.dilation) % s.stride != 0) ++first;
+    const bool none = first == push.tap_step;
+    push.first[a] = static_cast<int32_t>(none ? 0 : first);
+    push.taps[a] = none ? 0 : static_cast<int32_t>((s.kernel - first + push.tap_step - 1) / push.tap_step);
+    push.base[a] = none ? 0 : static_cast<int32_t>((a + s.padding - first * s.dilation) / s.stride);
+  }
+}
+
+ProductPush product_push(const ConvShape& s, ConvDirection direction) {
+  const bool forward = direction == ConvDirection::kForward;
+  const auto [in, out] = channels_of(s, direction);
+  ProductPush push{};
+  push.n = static_cast<int32_t>(s.n);
+  push.in4 = static_cast<int32_t>(blocks4(in));
+  push.out4 = static_cast<int32_t>(blocks4(out));
+  push.h = static_cast<int32_t>(forward ? s.h : s.ho);
+  push.w = static_cast<int32_t>(forward ? s.w : s.wo);
+  push.out_h = static_cast<int32_t>(forward ? s.ho : s.h);
+  push.out_w = static_cast<int32_t>(forward ? s.wo : s.w);
+  push.kernel = static_cast<int32_t>(s.kernel);
+  if (forward)
+    set_forward_taps(push, s);
+  else
+    set_transposed_taps(push, s);
+  // Rows and columns share their taps: a tap is dropped where it is outside in both directions.
+  for (int a = 0; a < push.phases; ++a) {
+    const int64_t outputs = (std::max(push.out_h, push.out_w) - a + push.phases - 1) / push.phases;
+    drop_outside_taps(push, a, outputs, std::max(push.h, push.w));
+  }
+  return push;
+}
+
+std::string_view chosen_kernel(std::string_view kernel, const Caps& caps) {
+  if (kernel.empty()) return caps.cpu() && can_run_conv_kernel(kShuffle, caps) ? kShuffle : kUniform;
+  if (!can_run_conv_kernel(kernel, caps))
+    throw Error(fmt::format("convolution kernel '{}' can't run on {}; leave the choice to the device", kernel,
+                            caps.name));
+  return kernel;
+}
+
+void record_pack(Recorder& recorder, const PackPush& push, const ConvOperands& operands, const Slice& packed) {
+  recorder.dispatch_flat("conv_pack", static_cast<uint64_t>(push.vectors), {operands.w, operands.bias, packed},
+                         push);
+}
+
+/// Workgroups in two directions, as many as `count` at least.
+Groups spread(uint64_t count, uint32_t phases, const Caps& caps) {
+  const uint64_t columns = std::min<uint64_t>(count, caps.max_groups[0]);
+  const uint64_t rows = (count + columns - 1) / columns;
+  return {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), phases * phases};
+}
+
+}  // namespace
+
+bool is_conv_kernel(std::string_view kernel) {
+  return kernel.empty() || kernel == kShuffle || kernel == kUniform;
+}
+
+bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
+  if (kernel == kShuffle) return caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128;
+  return is_conv_kernel(kernel);
+}
+
+uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
+  return static_cast<uint64_t>(pack_push(shape, direction, false).vectors) * 16;
+}
+
+void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
+                         const ConvOperands& operands, Slice scratch, std::string_view kernel) {
+  const Caps& caps = recorder.caps();
+  const std::string_view family = chosen_kernel(kernel, caps);
+  const PackPush pack = pack_push(shape, direction, static_cast<bool>(operands.bias));
+  const Slice packed = scratch.sub(0, static_cast<uint64_t>(pack.vectors) * 16);
+  record_pack(recorder, pack, operands, packed);
+
+  ProductPush push = product_push(shape, direction);
+  push.bias = pack.weight_vectors;
+  const uint32_t lanes = family == kShuffle ? caps.subgroup_size : caps.flat_workgroup();
+  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
+  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
+  const int64_t pixels = push.n * rows * columns;
+  const ConvTile tile = family == kShuffle
+                            ? choose_shuffle_tile(pixels * push.phases * push.phases, pack.out_channels, lanes)
+                            : choose_uniform_tile(pixels, pack.out_channels, lanes);
+  push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
+  const int64_t tile_pixels = static_cast<int64_t>(lanes) * tile.pixels;
+  const auto groups = static_cast<uint64_t>((pixels + tile_pixels - 1) / tile_pixels * push.tiles);
+  recorder.dispatch(
+      "conv_product." + std::string(family),
+      {lanes, static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels), operands.accumulate},
+      {operands.in, packed, operands.out}, push, spread(groups, static_cast<uint32_t>(push.phases), caps));
+}
+
+}  // namespace vkopple

@@ -1,0 +1,88 @@
+#include "graph/ops/conv_transpose2d.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "graph/conv/conv_product.h"
+#include "graph/conv/weight_gradient.h"
+
+namespace vkopple {
+namespace {
+
+/// The convolution of which this is the transpose: from y (its x) to x (its y).
+ConvShape convolution_of(const Shape& x, const Shape& w) {
+  return {.n = x[0],
+          .ci = w[1],
+          .h = 2 * x[2],
+          .w = 2 * x[3],
+          .co = w[0],
+          .ho = x[2],
+          .wo = x[3],
+          .kernel = w[2],
+          .stride = 2,
+          .padding = w[2] == 3 ? 1 : 0,
+          .dilation = 1};
+}
+
+}  // namespace
+
+std::vector<TensorSpec> ConvTranspose2d::infer(std::span<const TensorSpec> x) const {
+  require(x.size() == (has_bias_ ? 3U : 2U), "takes x and weights, and a bias where it has one");
+  require(is_conv_kernel(options_.kernel), fmt::format("has no kernel named '{}'", options_.kernel));
+  const Shape& in = x[0].shape;
+  const Shape& w = x[1].shape;
+  require(in.rank() == 4 && x[0] == channels4(in),
+          fmt::format("x {} is not (N, C, H, W) in NC4HW4", in.text()));
+  require(w.rank() == 4 && x[1] == row_major(w) && w[2] == w[3] && w[0] == in[1],
+          fmt::format("weights {} are not ({}, Co, k, k) in rows, for x {}", w.text(), in[1], in.text()));
+  require(w[2] == 2 || w[2] == 3, fmt::format("weights {} are not 2 x 2 or 3 x 3", w.text()));
+  require(!has_bias_ || x[2] == row_major({w[1]}),
+          fmt::format("bias is not ({}), for weights {}", w[1], w.text()));
+  return {channels4({in[0], w[1], 2 * in[2], 2 * in[3]})};
+}
+
+Needs ConvTranspose2d::needs(std::span<const TensorSpec> x, const Caps& caps) const {
+  const ConvShape shape = convolution_of(x[0].shape, x[1].shape);
+  Needs needs;
+  needs.forward_scratch = conv_product_scratch(shape, ConvDirection::kTransposed);
+  needs.backward_scratch =
+      std::max(conv_product_scratch(shape, ConvDirection::kForward), weight_gradient_scratch(shape, caps));
+  if (has_bias_)
+    needs.backward_scratch = std::max(needs.backward_scratch, bias_gradient_scratch(infer(x)[0], caps));
+  needs.inputs_for_backward = 0b011;
+  needs.outputs_for_backward = 0;
+  needs.forward_flop = shape.flop();
+  needs.backward_flop = 2 * shape.flop();
+  return needs;
+}
+
+void ConvTranspose2d::record_forward(Recorder& recorder, const Forward& io) const {
+  record_conv_product(recorder, convolution_of(io.x[0].shape(), io.x[1].shape()), ConvDirection::kTransposed,
+                      {.in = io.x[0].slice,
+                       .w = io.x[1].slice,
+                       .bias = has_bias_ ? io.x[2].slice : Slice{},
+                       .out = io.y[0].slice},
+                      io.scratch, options_.kernel);
+}
+
+void ConvTranspose2d::record_backward(Recorder& recorder, const Backward& io) const {
+  const ConvShape shape = convolution_of(io.x[0].shape(), io.x[1].shape());
+  const Slice dy = io.dy[0].slice;
+  if (io.wants(0))
+    record_conv_product(
+        recorder, shape, ConvDirection::kForward,
+        {.in = dy, .w = io.x[1].slice, .bias = {}, .out = io.dx[0].slice, .accumulate = io.accumulates(0)},
+        io.scratch, options_.kernel);
+  if (io.wants(1))
+    record_weight_gradient(recorder, shape, dy, io.x[0].slice, io.dx[1].slice, io.accumulates(1), io.scratch);
+  if (has_bias_ && io.wants(2))
+    record_bias_gradient(recorder, io.dy[0].spec, dy, io.dx[2].slice, io.accumulates(2), io.scratch);
+}
+
+Value conv_transpose2d(Value x, Value w, Value b, const ConvTranspose2dOptions& options) {
+  const auto op = std::make_shared<ConvTranspose2d>(options, static_cast<bool>(b));
+  return b ? x.graph().apply1(op, {x, w, b}) : x.graph().apply1(op, {x, w});
+}
+
+}  // namespace vkopple

@@ -1,0 +1,152 @@
+// variants: shuffle uniform
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "access.glsl"
+
+// A convolution, forward or transposed, as an implicit product of matrices held in registers:
+//   out[n, o, ya, xb] = bias[o] + Σ tap,i  in[n, i, ya' , xb'] · w[o, tap, i]
+// Output row y = row · phases + a of phase a reads input rows y' = row · stride + base[a] + j · step for its taps
+// ky = first[a] + j · tap_step, j = 0 … taps[a] − 1; columns likewise. One phase is a forward convolution or the transposed one of
+// stride 1; the transposed convolution of stride 2 has two, so that it never multiplies by the zeros between its inputs.
+//
+// in and out are NC4HW4, weights as conv_pack leaves them. One invocation makes kOut4 vectors of 4 output channels at kPixels pixels
+// that lie a workgroup's width apart; pixels of a phase are numbered through images and rows. Workgroup z is the phase,
+// (x, y) the tile, output channels running fastest so that neighbours share their inputs. Any sizes.
+// The variants differ in how invocations of the same output channels share weights: each lane of a subgroup fetches the weights of one of
+// 8 output channels and hands them round (lanes >= 8), or all of them load the same address.
+layout(constant_id = 1) const int kOut4 = 1;
+layout(constant_id = 2) const int kPixels = 1;
+layout(constant_id = 3) const uint kAccumulate = 0;  // 1: out += …
+const int kBlocks = (kOut4 + 1) / 2;                 // of 8 output channels
+
+layout(push_constant) uniform Push {
+  int n;
+  int in4;  // vectors of 4 input channels
+  int out4;
+  int h;  // of the input
+  int w;
+  int out_h;
+  int out_w;
+  int kernel;
+  int stride;
+  int step;
+  int tap_step;
+  int phases;
+  int first[2];
+  int taps[2];
+  int base[2];
+  int tiles;  // of output channels
+  int bias;   // where it starts in `weights`
+} p;
+
+READ4(0, x)
+READ4(1, weights)
+WRITE4(2, y)
+
+const int kOutside = -1073741824;  // stays negative however far a channel is from the first
+
+#ifdef SHUFFLE
+#include "subgroup.glsl"
+#endif
+
+#ifdef TEXEL
+#define input4(at, shift) (kZeroOutside ? load4(x, (at) + (shift)) : load4_or_zero(x, (at) >= 0, (at) + (shift)))
+#else
+#define input4(at, shift) load4_or_zero(x, (at) >= 0, (at) + (shift))
+#endif
+
+// Pixels of this invocation: image (or beyond the last one), row and column within the phase.
+int image[kPixels];
+int row[kPixels];
+int column[kPixels];
+
+void find_pixels(int tile, int rows, int columns) {
+  // One exact division for the tile; from there on numbers are small enough for floats.
+  int begin = tile * int(gl_WorkGroupSize.x) * kPixels;
+  int first_image = begin / (rows * columns);
+  int within = begin - first_image * (rows * columns);
+  int first_row = within / columns;
+  int first_column = within - first_row * columns;
+  [[unroll]] for (int r = 0; r < kPixels; ++r) {
+    int c = first_column + r * int(gl_WorkGroupSize.x) + int(gl_LocalInvocationID.x);
+    int rows_on = int((float(c) + 0.5) / float(columns));
+    column[r] = c - rows_on * columns;
+    int down = first_row + rows_on;
+    int images_on = int((float(down) + 0.5) / float(rows));
+    row[r] = down - images_on * rows;
+    image[r] = first_image + images_on;
+  }
+}
+
+vec4 sums[kPixels][kOut4];
+
+// Adds the 4 input channels at `at[r] + shift` times the weights from `block` on, 8 output channels every `stride` vectors.
+#define ADD_CHANNELS(at, shift, block, stride)                                                                     \
+  {                                                                                                                \
+    vec4 v[kPixels];                                                                                               \
+    [[unroll]] for (int r = 0; r < kPixels; ++r) v[r] = input4(at[r], shift);                                      \
+    [[unroll]] for (int b = 0; b < kBlocks; ++b) {                                                                 \
+      LOAD_WEIGHTS((block) + b * (stride))                                                                         \
+      [[unroll]] for (int half_ = 0; half_ < 2 && 2 * b + half_ < kOut4; ++half_)                                  \
+        [[unroll]] for (int i = 0; i < 4; ++i) {                                                                   \
+          vec4 s = vec4(WEIGHT(4 * half_, i), WEIGHT(4 * half_ + 1, i), WEIGHT(4 * half_ + 2, i),                  \
+                        WEIGHT(4 * half_ + 3, i));                                                                 \
+          [[unroll]] for (int r = 0; r < kPixels; ++r)                                                             \
+            sums[r][2 * b + half_] = fma(s, vec4(v[r][i]), sums[r][2 * b + half_]);                                \
+        }                                                                                                          \
+    }                                                                                                              \
+  }
+
+#ifdef SHUFFLE
+#define LOAD_WEIGHTS(from) vec4 mine = load4(weights, (from) + int(gl_SubgroupInvocationID & 7u));
+#define WEIGHT(o, i) from_lane(mine[i], o)
+#else
+#define LOAD_WEIGHTS(from)                                    \
+  vec4 all[8];                                                \
+  [[unroll]] for (int o = 0; o < min(8, 4 * kOut4); ++o) all[o] = load4(weights, (from) + o);
+#define WEIGHT(o, i) all[o][i]
+#endif
+
+void main() {
+  int a = int(gl_WorkGroupID.z) / p.phases;
+  int b = int(gl_WorkGroupID.z) - a * p.phases;
+  int rows = (p.out_h - a + p.phases - 1) / p.phases;
+  int columns = (p.out_w - b + p.phases - 1) / p.phases;
+  int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+  int tile = group / p.tiles;
+  int out_tile = group - tile * p.tiles;
+  if (tile * int(gl_WorkGroupSize.x) * kPixels >= p.n * rows * columns) return;
+  find_pixels(tile, rows, columns);
+
+  int out_block = out_tile * kOut4;
+  [[unroll]] for (int o = 0; o < kOut4; ++o) {
+    vec4 start = load4(weights, p.bias + out_block + o);
+    [[unroll]] for (int r = 0; r < kPixels; ++r) sums[r][o] = start;
+  }
+  int size = p.h * p.w;
+  int block_stride = p.kernel * p.kernel * p.in4 * 8;
+  int weights_begin = out_block / 2 * block_stride;
+  for (int j = 0; j < p.taps[a]; ++j)
+    for (int k = 0; k < p.taps[b]; ++k) {
+      int at[kPixels];
+      [[unroll]] for (int r = 0; r < kPixels; ++r) {
+        int yi = row[r] * p.stride + p.base[a] + j * p.step;
+        int xi = column[r] * p.stride + p.base[b] + k * p.step;
+        bool inside = image[r] < p.n && yi >= 0 && yi < p.h && xi >= 0 && xi < p.w;
+        at[r] = inside ? (image[r] * p.in4 * p.h + yi) * p.w + xi : kOutside;
+      }
+      int tap = (p.first[a] + j * p.tap_step) * p.kernel + p.first[b] + k * p.tap_step;
+      int tap_begin = weights_begin + tap * p.in4 * 8;
+      for (int c = 0; c < p.in4; ++c) ADD_CHANNELS(at, c * size, tap_begin + c * 8, block_stride)
+    }
+
+  int out_size = p.out_h * p.out_w;
+  [[unroll]] for (int r = 0; r < kPixels; ++r)
+    if (image[r] < p.n) {
+      int pixel = (row[r] * p.phases + a) * p.out_w + column[r] * p.phases + b;
+      int at_out = (image[r] * p.out4 + out_block) * out_size + pixel;
+      [[unroll]] for (int o = 0; o < kOut4; ++o)
+        if (out_block + o < p.out4) add4(y, at_out + o * out_size, sums[r][o], kAccumulate)
+    }
+}

@@ -19,6 +19,7 @@ layout(constant_id = 1) const int kOut4 = 1;
 layout(constant_id = 2) const int kPixels = 1;
 layout(constant_id = 3) const uint kAccumulate = 0;  // 1: out += …
 const int kBlocks = (kOut4 + 1) / 2;                 // of 8 output channels
+const int kHalves = kOut4 < 2 ? 1 : 2;                 // vectors of a block
 
 layout(push_constant) uniform Push {
   int n;
@@ -88,13 +89,13 @@ vec4 sums[kPixels][kOut4];
     [[unroll]] for (int r = 0; r < kPixels; ++r) v[r] = input4(at[r], shift);                                      \
     [[unroll]] for (int b = 0; b < kBlocks; ++b) {                                                                 \
       LOAD_WEIGHTS((block) + b * (stride))                                                                         \
-      [[unroll]] for (int half_ = 0; half_ < 2 && 2 * b + half_ < kOut4; ++half_)                                  \
-        [[unroll]] for (int i = 0; i < 4; ++i) {                                                                   \
-          vec4 s = vec4(WEIGHT(4 * half_, i), WEIGHT(4 * half_ + 1, i), WEIGHT(4 * half_ + 2, i),                  \
-                        WEIGHT(4 * half_ + 3, i));                                                                 \
-          [[unroll]] for (int r = 0; r < kPixels; ++r)                                                             \
-            sums[r][2 * b + half_] = fma(s, vec4(v[r][i]), sums[r][2 * b + half_]);                                \
-        }                                                                                                          \
+      [[unroll]] for (int half_ = 0; half_ < kHalves; ++half_)                                                     \
+        [[unroll]] for (int o = 0; o < 4; ++o)                                                                     \
+          [[unroll]] for (int i = 0; i < 4; ++i) {                                                                 \
+            float s = WEIGHT(4 * half_ + o, i);                                                                    \
+            [[unroll]] for (int r = 0; r < kPixels; ++r)                                                           \
+              sums[r][2 * b + half_][o] = fma(s, v[r][i], sums[r][2 * b + half_][o]);                              \
+          }                                                                                                        \
     }                                                                                                              \
   }
 
@@ -103,8 +104,8 @@ vec4 sums[kPixels][kOut4];
 #define WEIGHT(o, i) from_lane(mine[i], o)
 #else
 #define LOAD_WEIGHTS(from)                                    \
-  vec4 all[8];                                                \
-  [[unroll]] for (int o = 0; o < min(8, 4 * kOut4); ++o) all[o] = load4(weights, (from) + o);
+  vec4 all[8];                                                             \
+  [[unroll]] for (int o = 0; o < 4 * kHalves; ++o) all[o] = load4(weights, (from) + o);
 #define WEIGHT(o, i) all[o][i]
 #endif
 

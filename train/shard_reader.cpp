@@ -70,23 +70,47 @@ class ShardReader::Tar {
   }
 
   /// The members of the next key.
-  std::optional<Sample> next() {
-    if (entry_ == nullptr) return std::nullopt;
-    if (keys_.size() >= limits_.max_samples) fail(fmt::format("more than {} samples", limits_.max_samples));
+  void next(std::optional<Sample>& result) {
+    if (!open_sample()) return;
     Sample sample{key_, {}, path_};
-    if (!keys_.insert(key_).second)
-      fail(fmt::format("the members of sample {} do not lie together", quote(key_)));
-    while (entry_ != nullptr && key_ == sample.key) {
-      if (sample.parts.size() >= limits_.max_parts)
-        fail(fmt::format("more than {} members in one sample", limits_.max_parts));
-      if (sample.parts.contains(extension_)) fail("it is there twice");
-      sample.parts.emplace(extension_, read_member());
-      advance();
-    }
-    return sample;
+    each_member([&] { sample.parts.emplace(extension_, read_member()); });
+    result = std::move(sample);
+  }
+  void next(std::optional<SamplePlace>& result) {
+    if (!open_sample()) return;
+    SamplePlace place{key_, 0, {}};
+    // No filter stands between the file and the tar, so what was consumed by now is where the member's bytes
+    // begin.
+    each_member([&] {
+      const auto offset = static_cast<std::uint64_t>(archive_filter_bytes(archive_.get(), 0));
+      place.parts.push_back({extension_, offset, member_bytes()});
+    });
+    result = std::move(place);
   }
 
  private:
+  /// False at the end.
+  bool open_sample() {
+    if (entry_ == nullptr) return false;
+    if (keys_.size() >= limits_.max_samples) fail(fmt::format("more than {} samples", limits_.max_samples));
+    if (!keys_.insert(key_).second)
+      fail(fmt::format("the members of sample {} do not lie together", quote(key_)));
+    return true;
+  }
+
+  template <class Take>
+  void each_member(const Take& take) {
+    const std::string key = key_;
+    std::set<std::string> seen;
+    while (entry_ != nullptr && key_ == key) {
+      if (seen.size() >= limits_.max_parts)
+        fail(fmt::format("more than {} members in one sample", limits_.max_parts));
+      if (!seen.insert(extension_).second) fail("it is there twice");
+      take();
+      advance();
+    }
+  }
+
   /// The library takes a file that is cut off between two members for complete.
   void check_end() const {
     struct stat info {};
@@ -112,7 +136,8 @@ class ShardReader::Tar {
       member_ = name != nullptr ? name : "";
       check_name();
     } while (archive_entry_filetype(entry_) == AE_IFDIR);
-    if (archive_entry_filetype(entry_) != AE_IFREG || archive_entry_hardlink(entry_) != nullptr)
+    if (archive_entry_filetype(entry_) != AE_IFREG || archive_entry_hardlink(entry_) != nullptr ||
+        archive_entry_sparse_count(entry_) > 0)
       fail("it is not a plain file");
     split_name();
   }
@@ -140,12 +165,16 @@ class ShardReader::Tar {
     }
   }
 
-  std::vector<std::byte> read_member() const {
+  std::uint64_t member_bytes() const {
     const std::int64_t size = archive_entry_size_is_set(entry_) != 0 ? archive_entry_size(entry_) : -1;
     if (size < 0 || static_cast<std::uint64_t>(size) > limits_.max_part_bytes) {
       fail(fmt::format("its size of {} bytes is not within the limit of {}", size, limits_.max_part_bytes));
     }
-    std::vector<std::byte> bytes(static_cast<std::size_t>(size));
+    return static_cast<std::uint64_t>(size);
+  }
+
+  std::vector<std::byte> read_member() const {
+    std::vector<std::byte> bytes(member_bytes());
     std::size_t used = 0;
     while (used < bytes.size()) {
       const la_ssize_t got = archive_read_data(archive_.get(), bytes.data() + used, bytes.size() - used);
@@ -181,15 +210,45 @@ ShardReader::ShardReader(const fs::path& path, ShardLimits limits)
 
 ShardReader::~ShardReader() = default;
 
-std::optional<Sample> ShardReader::next() {
+template <class Result>
+std::optional<Result> ShardReader::next_as() {
+  std::optional<Result> result;
   while (true) {
     if (tar_) {
-      if (std::optional<Sample> sample = tar_->next()) return sample;
+      tar_->next(result);
+      if (result) return result;
       tar_.reset();
     }
     if (opened_ == shards_.size()) return std::nullopt;
     tar_ = std::make_unique<Tar>(shards_[opened_++], limits_);
   }
+}
+
+std::optional<Sample> ShardReader::next() { return next_as<Sample>(); }
+
+std::optional<SamplePlace> ShardReader::next_place() {
+  std::optional<SamplePlace> place = next_as<SamplePlace>();
+  if (place) place->shard = opened_ - 1;
+  return place;
+}
+
+Sample ShardReader::read(const SamplePlace& place, const std::set<std::string>& extensions) const {
+  Sample sample{place.key, {}, shards_.at(place.shard)};
+  const FileDescriptor file = open_for_reading(sample.shard);
+  for (const SamplePlace::Part& part : place.parts) {
+    if (!extensions.empty() && !extensions.contains(part.extension)) continue;
+    std::vector<std::byte> bytes(part.bytes);
+    std::size_t used = 0;
+    while (used < bytes.size()) {
+      const ssize_t got =
+          ::pread(file.get(), bytes.data() + used, bytes.size() - used, static_cast<off_t>(part.offset + used));
+      if (got <= 0)
+        throw Error(sample.where(part.extension) + " can't be read: the shard changed; start again");
+      used += static_cast<std::size_t>(got);
+    }
+    sample.parts.emplace(part.extension, std::move(bytes));
+  }
+  return sample;
 }
 
 void ShardReader::rewind() {

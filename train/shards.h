@@ -27,6 +27,17 @@ struct Sample {
   const std::vector<std::byte>& part(const std::string& extension) const;
 };
 
+/// Where a sample lies, so that it can be read later and alone.
+struct SamplePlace {
+  struct Part {
+    std::string extension;
+    std::uint64_t offset = 0, bytes = 0;  ///< in the shard's file
+  };
+  std::string key;
+  std::size_t shard = 0;  ///< of ShardReader::shards()
+  std::vector<Part> parts;
+};
+
 /// Writes FOLDER/PREFIX-000000.tar, PREFIX-000001.tar, ... of `samples_per_shard` samples each. The same
 /// samples give the same bytes. A shard appears under its name when it is full; the last one with `finish`,
 /// without which it is dropped. The folder is created; one that holds shards of this prefix already is refused,
@@ -82,11 +93,21 @@ class ShardReader {
   /// Nothing after the last sample.
   std::optional<Sample> next();
 
+  /// Likewise, without reading what the parts hold: fast even where they are large.
+  std::optional<SamplePlace> next_place();
+
+  /// The sample at a place that next_place() gave, with those parts only that `extensions` names (all where it
+  /// is empty).
+  Sample read(const SamplePlace& place, const std::set<std::string>& extensions = {}) const;
+
   /// Back to the first sample.
   void rewind();
 
  private:
   class Tar;
+
+  template <class Result>
+  std::optional<Result> next_as();
 
   std::vector<std::filesystem::path> shards_;
   ShardLimits limits_;

@@ -213,6 +213,30 @@ TEST_F(Shards, RefusesLinksAndDevices) {
   refuse(tar_header("a.json", 0, '6') + kTarEnd, {"'a.json'", "not a plain file"});
 }
 
+TEST_F(Shards, PlacesLeadToTheSameSamples) {
+  const auto shard = [&](const char* name, const std::string& text) { write_file(folder_ / name, text); };
+  shard("a.tar", tar_member("1.json", "{}") + tar_member("1.0.png", std::string(700, 'x')) +
+                     tar_member("2.json", "two") + kTarEnd);
+  shard("b.tar", tar_member("1.json", "other") + kTarEnd);
+  ShardReader reader(folder_.path());
+  const auto all = read_all(folder_.path());
+  ASSERT_EQ(all.size(), 3u);
+  for (const Sample& expected : all) {
+    const auto place = reader.next_place();
+    ASSERT_TRUE(place);
+    const Sample sample = reader.read(*place);
+    EXPECT_EQ(sample.key, expected.key);
+    EXPECT_EQ(sample.parts, expected.parts);
+    EXPECT_EQ(sample.shard, expected.shard);
+    EXPECT_EQ(reader.read(*place, {"json"}).parts.size(), 1u);
+  }
+  EXPECT_FALSE(reader.next_place());
+  reader.rewind();
+  const auto place = reader.next_place();
+  std::filesystem::resize_file(folder_ / "a.tar", 1024);
+  expect_error([&] { reader.read(*place); }, {"a.tar: 1.0.png", "start again"});
+}
+
 TEST_F(Shards, Limits) {
   const std::string three =
       tar_member("a.json", "12345") + tar_member("a.0.png") + tar_member("b.json") + kTarEnd;

@@ -1,0 +1,36 @@
+#include "train/data/open_source.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+#include <system_error>
+
+#include "runtime/error.h"
+#include "train/rooms/room_source.h"
+
+namespace vkopple {
+namespace {
+
+constexpr std::string_view kRooms = "rooms:";
+
+uint64_t parse_seed(std::string_view text) {
+  uint64_t seed = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (problem == std::errc() && end == text.data() + text.size()) return seed;
+  throw UsageError(fmt::format("rooms:{}: the seed must be a whole number from 0 to {}", text, UINT64_MAX));
+}
+
+}  // namespace
+
+std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
+                                             const RoomsConfig& rooms, int batch, uint64_t seed,
+                                             Reading reading) {
+  if (data.starts_with(kRooms)) {
+    return std::make_unique<RoomSource>(device, lens, rooms, batch,
+                                        parse_seed(std::string_view(data).substr(kRooms.size())));
+  }
+  return std::make_unique<ShardSource>(data, lens, batch, seed, reading);
+}
+
+}  // namespace vkopple

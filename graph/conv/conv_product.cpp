@@ -17,10 +17,11 @@ namespace {
 constexpr std::string_view kShuffle = "shuffle";
 constexpr std::string_view kUniform = "uniform";
 
+/// As conv_pack.comp has it.
 struct PackPush {
   int32_t out_channels, in_channels, taps;
   int32_t transposed, has_bias;
-  int32_t weight_vectors, vectors;
+  int32_t weight_vectors, weight_invocations, invocations;
 };
 
 /// As conv_product.comp has it.
@@ -40,23 +41,53 @@ Channels channels_of(const ConvShape& shape, ConvDirection direction) {
   return {shape.co, shape.ci};
 }
 
-/// Output channels that weights and bias are packed for: whole tiles of any size.
+/// Output channels that weights and bias are packed for: whole tiles, of any size that could be chosen.
 int64_t packed_channels(int64_t channels) {
+  for (const int64_t most : {8, 16})
+    if (channels <= most) return most;
   return (channels + kMostTileChannels - 1) / kMostTileChannels * kMostTileChannels;
 }
 
-PackPush pack_push(const ConvShape& shape, ConvDirection direction, bool has_bias) {
-  const auto [in, out] = channels_of(shape, direction);
-  const int64_t taps = shape.kernel * shape.kernel;
-  const int64_t weights = packed_channels(out) * taps * blocks4(in);
-  return {.out_channels = static_cast<int32_t>(out),
-          .in_channels = static_cast<int32_t>(in),
-          .taps = static_cast<int32_t>(taps),
-          .transposed = direction == ConvDirection::kTransposed ? 1 : 0,
-          .has_bias = has_bias ? 1 : 0,
-          .weight_vectors = static_cast<int32_t>(weights),
-          .vectors = static_cast<int32_t>(weights + packed_channels(out) / 4)};
-}
+/// Weights and bias packed for a product.
+class Packing {
+ public:
+  Packing(const ConvShape& shape, ConvDirection direction)
+      : transposed_(direction == ConvDirection::kTransposed) {
+    const auto [in, out] = channels_of(shape, direction);
+    in_ = in;
+    out_ = out;
+    taps_ = shape.kernel * shape.kernel;
+    vectors_ = packed_channels(out) * taps_ * blocks4(in);
+  }
+  /// Where the bias starts.
+  int64_t weight_vectors() const { return vectors_; }
+  uint64_t bytes() const { return static_cast<uint64_t>(vectors_ + packed_channels(out_) / 4) * 16; }
+
+  void record(Recorder& recorder, const ConvOperands& operands, const Slice& packed) const {
+    const bool whole = (transposed_ ? out_ : in_) % 4 == 0;  // w is read in vectors
+    const int64_t weights = !whole ? vectors_ : vectors_ / taps_ / (transposed_ ? 4 : 1);
+    const int64_t invocations = weights + packed_channels(out_) / 4;
+    const PackPush push{.out_channels = static_cast<int32_t>(out_),
+                        .in_channels = static_cast<int32_t>(in_),
+                        .taps = static_cast<int32_t>(taps_),
+                        .transposed = transposed_ ? 1 : 0,
+                        .has_bias = operands.bias ? 1 : 0,
+                        .weight_vectors = static_cast<int32_t>(vectors_),
+                        .weight_invocations = static_cast<int32_t>(weights),
+                        .invocations = static_cast<int32_t>(invocations)};
+    const std::vector<uint32_t> constants =
+        whole ? std::vector{static_cast<uint32_t>(taps_)} : std::vector<uint32_t>{};
+    const char* shader =
+        !whole ? "conv_pack.any" : (transposed_ ? "conv_pack.transposed" : "conv_pack.forward");
+    recorder.dispatch_flat(shader, static_cast<uint64_t>(invocations), {operands.w, operands.bias, packed},
+                           push, constants);
+  }
+
+ private:
+  bool transposed_;
+  int64_t in_ = 0, out_ = 0, taps_ = 0;
+  int64_t vectors_ = 0;
+};
 
 /// Leaves out taps that read no input for any of the `outputs` rows or columns of a phase: at wide dilations of
 /// small images that is most of them.
@@ -130,11 +161,6 @@ std::string_view chosen_kernel(std::string_view kernel, const Caps& caps) {
   return kernel;
 }
 
-void record_pack(Recorder& recorder, const PackPush& push, const ConvOperands& operands, const Slice& packed) {
-  recorder.dispatch_flat("conv_pack", static_cast<uint64_t>(push.vectors), {operands.w, operands.bias, packed},
-                         push);
-}
-
 /// Workgroups in two directions, as many as `count` at least.
 Groups spread(uint64_t count, uint32_t phases, const Caps& caps) {
   const uint64_t columns = std::min<uint64_t>(count, caps.max_groups[0]);
@@ -154,26 +180,26 @@ bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
 }
 
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
-  return static_cast<uint64_t>(pack_push(shape, direction, false).vectors) * 16;
+  return Packing(shape, direction).bytes();
 }
 
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
   const Caps& caps = recorder.caps();
   const std::string_view family = chosen_kernel(kernel, caps);
-  const PackPush pack = pack_push(shape, direction, static_cast<bool>(operands.bias));
-  const Slice packed = scratch.sub(0, static_cast<uint64_t>(pack.vectors) * 16);
-  record_pack(recorder, pack, operands, packed);
+  const Packing packing(shape, direction);
+  const Slice packed = scratch.sub(0, packing.bytes());
+  packing.record(recorder, operands, packed);
 
   ProductPush push = product_push(shape, direction);
-  push.bias = pack.weight_vectors;
+  push.bias = static_cast<int32_t>(packing.weight_vectors());
+  const int64_t out = channels_of(shape, direction).out;
   const uint32_t lanes = family == kShuffle ? caps.subgroup_size : caps.flat_workgroup();
   const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
   const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
   const int64_t pixels = push.n * rows * columns;
-  const ConvTile tile = family == kShuffle
-                            ? choose_shuffle_tile(pixels * push.phases * push.phases, pack.out_channels, lanes)
-                            : choose_uniform_tile(pixels, pack.out_channels, lanes);
+  const ConvTile tile = family == kShuffle ? choose_shuffle_tile(pixels * push.phases * push.phases, out, lanes)
+                                           : choose_uniform_tile(pixels, out, lanes);
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
   const int64_t tile_pixels = static_cast<int64_t>(lanes) * tile.pixels;
   const auto groups = static_cast<uint64_t>((pixels + tile_pixels - 1) / tile_pixels * push.tiles);

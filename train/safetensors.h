@@ -26,7 +26,7 @@ class SafetensorsFile {
   bool contains(const std::string& name) const { return entries_.contains(name); }
 
   /// These and all below throw an Error naming file and tensor when there is no such tensor.
-  DType dtype(const std::string& name) const { return entry(name).dtype; }
+  StoredType dtype(const std::string& name) const { return entry(name).dtype; }
   const StoredShape& shape(const std::string& name) const { return entry(name).shape; }
 
   StoredTensor read(const std::string& name) const;
@@ -39,7 +39,7 @@ class SafetensorsFile {
 
  private:
   struct Entry {
-    DType dtype;
+    StoredType dtype;
     StoredShape shape;
     std::uint64_t begin, end;  ///< bytes, counted from the start of the data
   };

@@ -19,25 +19,25 @@ static_assert(std::endian::native == std::endian::little,
               "stored tensors are little-endian and copied as they are");
 
 struct DTypeFacts {
-  DType dtype;
+  StoredType dtype;
   std::string_view name;
   std::size_t size;
 };
-constexpr std::array<DTypeFacts, 13> kDTypes{{{DType::kBool, "BOOL", 1},
-                                              {DType::kU8, "U8", 1},
-                                              {DType::kI8, "I8", 1},
-                                              {DType::kU16, "U16", 2},
-                                              {DType::kI16, "I16", 2},
-                                              {DType::kF16, "F16", 2},
-                                              {DType::kBF16, "BF16", 2},
-                                              {DType::kU32, "U32", 4},
-                                              {DType::kI32, "I32", 4},
-                                              {DType::kF32, "F32", 4},
-                                              {DType::kU64, "U64", 8},
-                                              {DType::kI64, "I64", 8},
-                                              {DType::kF64, "F64", 8}}};
+constexpr std::array<DTypeFacts, 13> kDTypes{{{StoredType::kBool, "BOOL", 1},
+                                              {StoredType::kU8, "U8", 1},
+                                              {StoredType::kI8, "I8", 1},
+                                              {StoredType::kU16, "U16", 2},
+                                              {StoredType::kI16, "I16", 2},
+                                              {StoredType::kF16, "F16", 2},
+                                              {StoredType::kBF16, "BF16", 2},
+                                              {StoredType::kU32, "U32", 4},
+                                              {StoredType::kI32, "I32", 4},
+                                              {StoredType::kF32, "F32", 4},
+                                              {StoredType::kU64, "U64", 8},
+                                              {StoredType::kI64, "I64", 8},
+                                              {StoredType::kF64, "F64", 8}}};
 
-const DTypeFacts& facts(DType dtype) { return kDTypes.at(static_cast<std::size_t>(dtype)); }
+const DTypeFacts& facts(StoredType dtype) { return kDTypes.at(static_cast<std::size_t>(dtype)); }
 
 /// IEEE 754 binary16: 1 sign, 5 exponent (bias 15) and 10 mantissa bits.
 float half_to_float(std::uint16_t half) {
@@ -72,47 +72,47 @@ std::vector<Out> cast_all(std::span<const std::byte> bytes) {
 template <class Out>
 std::vector<Out> to_reals(const TensorView& t) {
   switch (t.dtype) {
-    case DType::kF32:
+    case StoredType::kF32:
       return cast_all<float, Out>(t.bytes);
-    case DType::kF64:
+    case StoredType::kF64:
       return cast_all<double, Out>(t.bytes);
-    case DType::kF16:
+    case StoredType::kF16:
       return convert_all<std::uint16_t, Out>(t.bytes, half_to_float);
-    case DType::kBF16:
+    case StoredType::kBF16:
       return convert_all<std::uint16_t, Out>(t.bytes, bfloat_to_float);
-    case DType::kBool:
-    case DType::kU8:
+    case StoredType::kBool:
+    case StoredType::kU8:
       return cast_all<std::uint8_t, Out>(t.bytes);
-    case DType::kI8:
+    case StoredType::kI8:
       return cast_all<std::int8_t, Out>(t.bytes);
-    case DType::kU16:
+    case StoredType::kU16:
       return cast_all<std::uint16_t, Out>(t.bytes);
-    case DType::kI16:
+    case StoredType::kI16:
       return cast_all<std::int16_t, Out>(t.bytes);
-    case DType::kU32:
+    case StoredType::kU32:
       return cast_all<std::uint32_t, Out>(t.bytes);
-    case DType::kI32:
+    case StoredType::kI32:
       return cast_all<std::int32_t, Out>(t.bytes);
-    case DType::kU64:
+    case StoredType::kU64:
       return cast_all<std::uint64_t, Out>(t.bytes);
-    case DType::kI64:
+    case StoredType::kI64:
       return cast_all<std::int64_t, Out>(t.bytes);
   }
   throw Error("unknown element type");
 }
 
 template <class T>
-StoredTensor store(DType dtype, StoredShape shape, std::span<const T> values) {
+StoredTensor store(StoredType dtype, StoredShape shape, std::span<const T> values) {
   const auto bytes = std::as_bytes(values);
   return {dtype, std::move(shape), {bytes.begin(), bytes.end()}};
 }
 
 }  // namespace
 
-std::size_t dtype_size(DType dtype) { return facts(dtype).size; }
-std::string_view dtype_name(DType dtype) { return facts(dtype).name; }
+std::size_t dtype_size(StoredType dtype) { return facts(dtype).size; }
+std::string_view dtype_name(StoredType dtype) { return facts(dtype).name; }
 
-std::optional<DType> dtype_from_name(std::string_view name) {
+std::optional<StoredType> dtype_from_name(std::string_view name) {
   for (const DTypeFacts& known : kDTypes) {
     if (known.name == name) return known.dtype;
   }
@@ -130,16 +130,16 @@ std::optional<std::int64_t> element_count(const StoredShape& shape) {
 std::string to_string(const StoredShape& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
 StoredTensor StoredTensor::of(StoredShape shape, std::span<const float> values) {
-  return store(DType::kF32, std::move(shape), values);
+  return store(StoredType::kF32, std::move(shape), values);
 }
 StoredTensor StoredTensor::of(StoredShape shape, std::span<const double> values) {
-  return store(DType::kF64, std::move(shape), values);
+  return store(StoredType::kF64, std::move(shape), values);
 }
 StoredTensor StoredTensor::of(StoredShape shape, std::span<const std::int32_t> values) {
-  return store(DType::kI32, std::move(shape), values);
+  return store(StoredType::kI32, std::move(shape), values);
 }
 StoredTensor StoredTensor::of(StoredShape shape, std::span<const std::int64_t> values) {
-  return store(DType::kI64, std::move(shape), values);
+  return store(StoredType::kI64, std::move(shape), values);
 }
 
 std::vector<float> to_floats(const TensorView& tensor) { return to_reals<float>(tensor); }
@@ -147,20 +147,20 @@ std::vector<double> to_doubles(const TensorView& tensor) { return to_reals<doubl
 
 std::vector<std::int64_t> to_ints(const TensorView& t, std::string_view name, std::string_view source) {
   switch (t.dtype) {
-    case DType::kBool:
-    case DType::kU8:
+    case StoredType::kBool:
+    case StoredType::kU8:
       return cast_all<std::uint8_t, std::int64_t>(t.bytes);
-    case DType::kI8:
+    case StoredType::kI8:
       return cast_all<std::int8_t, std::int64_t>(t.bytes);
-    case DType::kU16:
+    case StoredType::kU16:
       return cast_all<std::uint16_t, std::int64_t>(t.bytes);
-    case DType::kI16:
+    case StoredType::kI16:
       return cast_all<std::int16_t, std::int64_t>(t.bytes);
-    case DType::kU32:
+    case StoredType::kU32:
       return cast_all<std::uint32_t, std::int64_t>(t.bytes);
-    case DType::kI32:
+    case StoredType::kI32:
       return cast_all<std::int32_t, std::int64_t>(t.bytes);
-    case DType::kI64:
+    case StoredType::kI64:
       return cast_all<std::int64_t, std::int64_t>(t.bytes);
     default:
       throw Error(fmt::format("{}: tensor {} holds {}, but whole numbers up to 64 bits signed are needed",

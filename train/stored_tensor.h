@@ -12,11 +12,11 @@
 namespace vkopple {
 
 /// Element types of the safetensors format, all little-endian.
-enum class DType { kBool, kU8, kI8, kU16, kI16, kF16, kBF16, kU32, kI32, kF32, kU64, kI64, kF64 };
+enum class StoredType { kBool, kU8, kI8, kU16, kI16, kF16, kBF16, kU32, kI32, kF32, kU64, kI64, kF64 };
 
-std::size_t dtype_size(DType dtype);                          ///< bytes of one element
-std::string_view dtype_name(DType dtype);                     ///< "F32", as in a file's header
-std::optional<DType> dtype_from_name(std::string_view name);  ///< nothing when unknown
+std::size_t dtype_size(StoredType dtype);                          ///< bytes of one element
+std::string_view dtype_name(StoredType dtype);                     ///< "F32", as in a file's header
+std::optional<StoredType> dtype_from_name(std::string_view name);  ///< nothing when unknown
 
 /// Sizes, outermost first; empty for a scalar. None is negative.
 using StoredShape = std::vector<std::int64_t>;
@@ -27,7 +27,7 @@ std::string to_string(const StoredShape& shape);  ///< "[2, 3]"
 
 /// A tensor on the host as files hold it: row-major bytes.
 struct StoredTensor {
-  DType dtype = DType::kF32;
+  StoredType dtype = StoredType::kF32;
   StoredShape shape;
   std::vector<std::byte> bytes;
 
@@ -39,14 +39,14 @@ struct StoredTensor {
 
 /// The same over memory that someone else owns.
 struct TensorView {
-  DType dtype = DType::kF32;
+  StoredType dtype = StoredType::kF32;
   StoredShape shape;
   std::span<const std::byte> bytes;
 
-  TensorView(DType type, StoredShape sizes, std::span<const std::byte> memory)
+  TensorView(StoredType type, StoredShape sizes, std::span<const std::byte> memory)
       : dtype(type), shape(std::move(sizes)), bytes(memory) {}
   TensorView(StoredShape sizes, std::span<const float> values)
-      : TensorView(DType::kF32, std::move(sizes), std::as_bytes(values)) {}
+      : TensorView(StoredType::kF32, std::move(sizes), std::as_bytes(values)) {}
   TensorView(const StoredTensor& tensor)
       : TensorView(tensor.dtype, tensor.shape, tensor.bytes) {}  // NOLINT: implicit
 };

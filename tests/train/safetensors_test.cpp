@@ -59,7 +59,7 @@ TEST_F(Safetensors, RoundTrip) {
                                           {"scalar", StoredTensor::of({}, ints)},
                                           {"d", StoredTensor::of({1, 1}, doubles)},
                                           {"empty", StoredTensor::of({0, 4}, std::span<const float>())},
-                                          {"bytes", {DType::kU8, {3}, std::vector<std::byte>(3)}}});
+                                          {"bytes", {StoredType::kU8, {3}, std::vector<std::byte>(3)}}});
   const SafetensorsFile file(path);
   EXPECT_EQ(file.metadata().at("config"), "{\"a\": \"\xc3\xa9\\n\"}");
   EXPECT_EQ(file.names(), (std::vector<std::string>{"bytes", "d", "empty", "long", "scalar", "w"}));
@@ -71,7 +71,7 @@ TEST_F(Safetensors, RoundTrip) {
   EXPECT_TRUE(file.shape("scalar").empty());
   EXPECT_EQ(file.read_doubles("d"), doubles);
   EXPECT_TRUE(file.read_floats("empty").empty());
-  EXPECT_EQ(file.dtype("bytes"), DType::kU8);
+  EXPECT_EQ(file.dtype("bytes"), StoredType::kU8);
 }
 
 TEST_F(Safetensors, BytesAreDeterminedAlignedAndKnown) {
@@ -111,7 +111,7 @@ TEST_F(Safetensors, ReadsTheFixtureAndWritesItAgain) {
 }
 
 TEST_F(Safetensors, ConvertsEveryType) {
-  const auto tensor = [](DType dtype, auto... values) {
+  const auto tensor = [](StoredType dtype, auto... values) {
     StoredTensor t{dtype, {static_cast<std::int64_t>(sizeof...(values))}, {}};
     (t.bytes.insert(t.bytes.end(), reinterpret_cast<const std::byte*>(&values),
                     reinterpret_cast<const std::byte*>(&values) + sizeof(values)),
@@ -120,25 +120,25 @@ TEST_F(Safetensors, ConvertsEveryType) {
   };
   using U16 = std::uint16_t;
   const float inf = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(to_floats(tensor(DType::kF16, U16{0x3c00}, U16{0xc000}, U16{0x3555}, U16{0x0001}, U16{0x03ff},
+  EXPECT_EQ(to_floats(tensor(StoredType::kF16, U16{0x3c00}, U16{0xc000}, U16{0x3555}, U16{0x0001}, U16{0x03ff},
                              U16{0x7bff})),
             (std::vector<float>{1, -2, 0.333251953125f, 0x1p-24f, 1023 * 0x1p-24f, 65504}));
-  EXPECT_EQ(to_floats(tensor(DType::kF16, U16{0x7c00}, U16{0xfc00})), (std::vector<float>{inf, -inf}));
-  EXPECT_TRUE(std::isnan(to_floats(tensor(DType::kF16, U16{0x7e00})).at(0)));
-  EXPECT_TRUE(std::signbit(to_floats(tensor(DType::kF16, U16{0x8000})).at(0)));
-  EXPECT_EQ(to_floats(tensor(DType::kBF16, U16{0x3f80}, U16{0xc040})), (std::vector<float>{1, -3}));
-  EXPECT_EQ(to_doubles(tensor(DType::kF64, 0.1)), (std::vector<double>{0.1}));
-  EXPECT_EQ(to_doubles(tensor(DType::kF32, 0.1f)), (std::vector<double>{0.1f}));
-  EXPECT_EQ(to_floats(tensor(DType::kI32, -3)), (std::vector<float>{-3}));
-  EXPECT_EQ(to_floats(tensor(DType::kI64, std::int64_t{-3})), (std::vector<float>{-3}));
-  EXPECT_EQ(to_floats(tensor(DType::kU8, std::uint8_t{255})), (std::vector<float>{255}));
+  EXPECT_EQ(to_floats(tensor(StoredType::kF16, U16{0x7c00}, U16{0xfc00})), (std::vector<float>{inf, -inf}));
+  EXPECT_TRUE(std::isnan(to_floats(tensor(StoredType::kF16, U16{0x7e00})).at(0)));
+  EXPECT_TRUE(std::signbit(to_floats(tensor(StoredType::kF16, U16{0x8000})).at(0)));
+  EXPECT_EQ(to_floats(tensor(StoredType::kBF16, U16{0x3f80}, U16{0xc040})), (std::vector<float>{1, -3}));
+  EXPECT_EQ(to_doubles(tensor(StoredType::kF64, 0.1)), (std::vector<double>{0.1}));
+  EXPECT_EQ(to_doubles(tensor(StoredType::kF32, 0.1f)), (std::vector<double>{0.1f}));
+  EXPECT_EQ(to_floats(tensor(StoredType::kI32, -3)), (std::vector<float>{-3}));
+  EXPECT_EQ(to_floats(tensor(StoredType::kI64, std::int64_t{-3})), (std::vector<float>{-3}));
+  EXPECT_EQ(to_floats(tensor(StoredType::kU8, std::uint8_t{255})), (std::vector<float>{255}));
   const auto ints = [](const StoredTensor& t) { return to_ints(t, "n", "f"); };
-  EXPECT_EQ(ints(tensor(DType::kI8, std::int8_t{-1})), (std::vector<std::int64_t>{-1}));
-  EXPECT_EQ(ints(tensor(DType::kU32, ~0u)), (std::vector<std::int64_t>{4294967295}));
-  EXPECT_EQ(ints(tensor(DType::kBool, std::uint8_t{1})), (std::vector<std::int64_t>{1}));
-  expect_error([&] { ints(tensor(DType::kF32, 1.0f)); }, {"f: tensor 'n' holds F32"});
+  EXPECT_EQ(ints(tensor(StoredType::kI8, std::int8_t{-1})), (std::vector<std::int64_t>{-1}));
+  EXPECT_EQ(ints(tensor(StoredType::kU32, ~0u)), (std::vector<std::int64_t>{4294967295}));
+  EXPECT_EQ(ints(tensor(StoredType::kBool, std::uint8_t{1})), (std::vector<std::int64_t>{1}));
+  expect_error([&] { ints(tensor(StoredType::kF32, 1.0f)); }, {"f: tensor 'n' holds F32"});
   for (int i = 0; i < 13; ++i)
-    EXPECT_EQ(dtype_from_name(dtype_name(static_cast<DType>(i))), static_cast<DType>(i));
+    EXPECT_EQ(dtype_from_name(dtype_name(static_cast<StoredType>(i))), static_cast<StoredType>(i));
 }
 
 TEST_F(Safetensors, UnsortedHeaderIsFine) {

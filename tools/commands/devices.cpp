@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/device_choice.h"
+#include "runtime/error.h"
 #include "runtime/instance.h"
 #include "tools/command.h"
 

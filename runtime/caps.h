@@ -41,7 +41,7 @@ struct Caps {
   bool subgroup_arithmetic = false;
   bool int64 = false;
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
-  bool zero_outside = false;      ///< quirk: a texel fetch outside its view gives zeros at no cost (lavapipe)
+  bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
 
   bool cpu() const { return type == DeviceType::kCpu; }

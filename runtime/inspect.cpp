@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -69,6 +70,12 @@ void read_limits(const VkPhysicalDeviceLimits& limits, Caps& caps) {
 void read_memory(VkPhysicalDevice device, Caps& caps) {
   VkPhysicalDeviceMemoryProperties memory{};
   vkGetPhysicalDeviceMemoryProperties(device, &memory);
+  if (caps.lavapipe) {
+    // lavapipe calls its heap 2 GiB whatever the machine has, and allocates beyond it.
+    caps.memory_bytes =
+        static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+    return;
+  }
   for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     if ((memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) != 0)
       caps.memory_bytes = std::max<uint64_t>(caps.memory_bytes, memory.memoryHeaps[i].size);
@@ -108,7 +115,7 @@ void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& 
     caps.subgroup_shuffle = (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_SHUFFLE_BIT) != 0;
     caps.subgroup_arithmetic = (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) != 0;
   }
-  caps.zero_outside = has_driver_properties && driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+  caps.lavapipe = has_driver_properties && driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
   read_limits(p.limits, caps);
 }
 

@@ -98,7 +98,7 @@ void PipelineSet::create_layouts(Pipeline& pipeline) const {
 void PipelineSet::create(Pipeline& pipeline, const std::vector<uint32_t>& constants) {
   create_layouts(pipeline);
   std::vector<uint32_t> values = constants;
-  values.push_back(device_->caps().zero_outside ? 1 : 0);
+  values.push_back(device_->caps().lavapipe ? 1 : 0);
   values.push_back(device_->caps().subgroup_size);
   std::vector<VkSpecializationMapEntry> entries;
   for (uint32_t i = 0; i < values.size(); ++i) {

@@ -16,7 +16,8 @@ constexpr int kFailed = 1;
 constexpr int kWrongUse = 2;
 
 int run(int argc, char** argv) {
-  CLI::App app("OPPLE on any Vulkan device: learns to cut images into objects, to place them in 3D and to see depth.");
+  CLI::App app(
+      "OPPLE on any Vulkan device: learns to cut images into objects, to place them in 3D and to see depth.");
   app.name("vkopple");
   app.set_version_flag("--version", std::string("vkopple ") + VKOPPLE_VERSION);
   app.require_subcommand(1);

@@ -14,11 +14,16 @@ namespace {
 
 std::string_view type_name(DeviceType type) {
   switch (type) {
-    case DeviceType::kDiscrete: return "discrete";
-    case DeviceType::kIntegrated: return "integrated";
-    case DeviceType::kVirtual: return "virtual";
-    case DeviceType::kCpu: return "cpu";
-    case DeviceType::kOther: return "other";
+    case DeviceType::kDiscrete:
+      return "discrete";
+    case DeviceType::kIntegrated:
+      return "integrated";
+    case DeviceType::kVirtual:
+      return "virtual";
+    case DeviceType::kCpu:
+      return "cpu";
+    case DeviceType::kOther:
+      return "other";
   }
   return "other";
 }
@@ -42,11 +47,12 @@ void print_table(const std::vector<Candidate>& candidates) {
   fmt::print("{:>5}  {:<10}  {:>8}  {:<40}  {}\n", "index", "type", "memory", "name", "driver");
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Caps& c = candidates[i].caps;
-    fmt::print("{:>5}  {:<10}  {:>4} GiB  {:<40}  {}\n", i, type_name(c.type), c.memory_bytes >> 30, c.name, c.driver);
+    fmt::print("{:>5}  {:<10}  {:>4} GiB  {:<40}  {}\n", i, type_name(c.type), c.memory_bytes >> 30, c.name,
+               c.driver);
     fmt::print("{:>5}  uuid {}{}\n", "", uuid_text(c.uuid),
-               candidates[i].missing.empty() ? ""
-                                             : fmt::format("; can't be used: lacks {}",
-                                                           fmt::join(candidates[i].missing, ", ")));
+               candidates[i].missing.empty()
+                   ? ""
+                   : fmt::format("; can't be used: lacks {}", fmt::join(candidates[i].missing, ", ")));
   }
 }
 

@@ -52,7 +52,8 @@ std::vector<OpChecks> chosen_checks(const Options& options) {
   if (options.ops.empty()) throw UsageError("gradcheck: name ops, or say --all");
   std::vector<OpChecks> chosen;
   for (const auto& op : options.ops) {
-    const auto found = std::find_if(checks.begin(), checks.end(), [&](const OpChecks& c) { return c.op == op; });
+    const auto found =
+        std::find_if(checks.begin(), checks.end(), [&](const OpChecks& c) { return c.op == op; });
     if (found == checks.end()) {
       std::string known;
       for (const auto& c : checks) known += (known.empty() ? "" : ", ") + std::string(c.op);
@@ -64,8 +65,8 @@ std::vector<OpChecks> chosen_checks(const Options& options) {
 }
 
 void print_row(const Summary& s) {
-  fmt::print("{:<22} {:>5}   {:>8.1e} {:>8.1e}   {:>8.1e} {:>8.1e}   {}\n", s.op, s.cases, s.forward.worst, s.forward.l2,
-             s.backward.worst, s.backward.l2, s.failures.empty() ? "ok" : "FAILED");
+  fmt::print("{:<22} {:>5}   {:>8.1e} {:>8.1e}   {:>8.1e} {:>8.1e}   {}\n", s.op, s.cases, s.forward.worst,
+             s.forward.l2, s.backward.worst, s.backward.l2, s.failures.empty() ? "ok" : "FAILED");
   for (const auto& failure : s.failures) fmt::print("    {}\n", failure);
 }
 
@@ -85,8 +86,8 @@ void run(const Options& options) {
   auto list = nlohmann::ordered_json::array();
   bool failed = false;
   if (!options.json)
-    fmt::print("{:<22} {:>5}   {:>17}   {:>17}\n{:<22} {:>5}   {:>8} {:>8}   {:>8} {:>8}\n", "", "", "forward error",
-               "gradient error", "op", "cases", "worst", "L2", "worst", "L2");
+    fmt::print("{:<22} {:>5}   {:>17}   {:>17}\n{:<22} {:>5}   {:>8} {:>8}   {:>8} {:>8}\n", "", "",
+               "forward error", "gradient error", "op", "cases", "worst", "L2", "worst", "L2");
   for (const OpChecks& op : checks) {
     const Summary summary = run_op(device, op);
     failed = failed || !summary.failures.empty();

@@ -1,6 +1,7 @@
 #include "runtime/pipeline_cache.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/spdlog.h>
 
 #include <fstream>
 
@@ -12,13 +13,15 @@ namespace {
 class PipelineCacheTest : public testing::Test {
  protected:
   void SetUp() override {
+    spdlog::set_level(spdlog::level::err);  // the warnings are expected, hundreds of them
     caps_.uuid.fill(7);
     caps_.driver_version = 3;
     file_ = folder_.path() / "cache.bin";
     save_pipeline_cache(file_, caps_, data_);
   }
+  void TearDown() override { spdlog::set_level(spdlog::level::info); }
 
-  TempFolder folder_;
+  test::TempFolder folder_;
   std::filesystem::path file_;
   Caps caps_;
   std::vector<std::byte> data_{std::byte{1}, std::byte{2}, std::byte{3}};

@@ -17,8 +17,7 @@
 namespace vkopple {
 namespace {
 
-// Views drawn at once: enough to fill any device, little memory.
-constexpr int kScenesAtOnce = 8;
+constexpr uint64_t kScenesAtOnce = 8;
 
 std::vector<std::byte> to_bytes(const std::string& text) {
   const auto bytes = std::as_bytes(std::span(text));
@@ -32,14 +31,22 @@ std::vector<T> view_of(const std::vector<T>& all, std::size_t view, std::size_t 
   return {begin, begin + static_cast<std::ptrdiff_t>(size)};
 }
 
-/// Pixels of a number of views, on the host.
+/// Pixels of any number of views, on the host.
 class Drawn {
  public:
-  Drawn(RoomRenderer& renderer, const Device& device)
-      : lens_(renderer.lens()),
-        images_(renderer.planes(renderer.image())),
-        depths_(download_values<float>(device, renderer.depth())),
-        labels_(download_values<uint32_t>(device, renderer.label())) {}
+  Drawn(RoomRenderer& renderer, const std::vector<View>& views) : lens_(renderer.lens()) {
+    const auto group_size = static_cast<std::size_t>(renderer.views());
+    for (std::size_t first = 0; first < views.size(); first += group_size) {
+      std::vector<View> group(
+          views.begin() + static_cast<std::ptrdiff_t>(first),
+          views.begin() + static_cast<std::ptrdiff_t>(std::min(first + group_size, views.size())));
+      group.resize(group_size, group.back());
+      renderer.render(group);
+      append(images_, renderer.planes(renderer.image()));
+      append(depths_, download_values<float>(renderer.device(), renderer.depth()));
+      append(labels_, download_values<uint32_t>(renderer.device(), renderer.label()));
+    }
+  }
 
   RgbImage image(std::size_t view) const {
     RgbImage image(lens_.height, lens_.width);
@@ -54,6 +61,10 @@ class Drawn {
   }
 
  private:
+  template <class T>
+  static void append(std::vector<T>& to, const std::vector<T>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  }
   std::size_t area() const { return lens_.pixels(); }
 
   Lens lens_;
@@ -86,22 +97,22 @@ Sample make_sample(uint64_t index, const Scene& scene, const Lens& lens, const D
 void generate_rooms(const Device& device, const GenerateOptions& options,
                     const std::function<void(uint64_t)>& progress) {
   ShardWriter writer(options.folder, "rooms", options.scenes_per_shard);
-  const int frames = options.rooms.frames;
-  RoomRenderer renderer(device, options.lens, options.rooms, kScenesAtOnce * frames);
-  for (uint64_t first = 0; first < options.scenes; first += kScenesAtOnce) {
-    const uint64_t count = std::min<uint64_t>(kScenesAtOnce, options.scenes - first);
+  const auto frames = static_cast<uint64_t>(options.rooms.frames);
+  const uint64_t views_at_once =
+      std::clamp<uint64_t>(options.pixels_at_once / options.lens.pixels(), 1, kScenesAtOnce * frames);
+  const uint64_t scenes_at_once = std::max<uint64_t>(views_at_once / frames, 1);
+  RoomRenderer renderer(device, options.lens, options.rooms,
+                        static_cast<int>(std::min(views_at_once, scenes_at_once * frames)));
+  for (uint64_t first = 0; first < options.scenes; first += scenes_at_once) {
     std::vector<Scene> scenes;
-    for (uint64_t i = 0; i < count; ++i) {
-      scenes.push_back(sample_scene(options.rooms, options.lens.half_view(), options.seed, first + i));
+    for (uint64_t i = first; i < std::min(first + scenes_at_once, options.scenes); ++i) {
+      scenes.push_back(sample_scene(options.rooms, options.lens.half_view(), options.seed, i));
     }
     std::vector<View> views;
-    for (int i = 0; i < kScenesAtOnce; ++i) {
-      const Scene& scene =
-          scenes[std::min(static_cast<std::size_t>(i), scenes.size() - 1)];  // the last batch repeats its last
-      for (int frame = 0; frame < frames; ++frame) views.push_back({&scene, frame});
+    for (const Scene& scene : scenes) {
+      for (int frame = 0; frame < options.rooms.frames; ++frame) views.push_back({&scene, frame});
     }
-    renderer.render(views);
-    const Drawn drawn(renderer, device);
+    const Drawn drawn(renderer, views);
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       writer.add(make_sample(first + i, scenes[i], options.lens, drawn, i * static_cast<std::size_t>(frames)));
       if (progress) progress(first + i + 1);

@@ -17,6 +17,8 @@ struct GenerateOptions {
   Lens lens;
   RoomsConfig rooms;
   std::size_t scenes_per_shard = 256;
+  uint64_t pixels_at_once = uint64_t{1}
+                            << 22;  ///< enough to fill a device, within the smallest binding of 128 MiB
 };
 
 /// Draws scenes 0 ... scenes - 1 of the seed and writes them as tar shards, a sample a scene (docs/data.md has

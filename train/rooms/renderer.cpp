@@ -19,6 +19,17 @@ struct RaycastPush {
   float focal;
 };
 
+/// Bytes of `views` pictures of 4 floats; throws Error where a shader can't reach so many.
+uint64_t image_bytes(const Device& device, const Lens& lens, int views) {
+  const uint64_t bytes = lens.pixels() * static_cast<uint64_t>(views) * 4 * sizeof(float),
+                 most = device.caps().max_storage_range;
+  if (bytes <= most) return bytes;
+  throw Error(
+      fmt::format("rooms: {} pictures of {} x {} pixels take {} bytes and {} reaches {} at once; draw fewer or "
+                  "smaller ones",
+                  views, lens.width, lens.height, bytes, device.caps().name, most));
+}
+
 uint64_t scene_bytes(std::size_t objects, int views) {
   return packed_view_size(objects) * static_cast<uint64_t>(views) * sizeof(float);
 }
@@ -35,7 +46,7 @@ RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsCo
       objects_(static_cast<std::size_t>(rooms.objects)),
       views_(views),
       scene_(device, scene_bytes(objects_, views), MemoryKind::kDevice, "rooms scene"),
-      image_(device, pixels() * 4 * sizeof(float), MemoryKind::kDevice, "rooms image"),
+      image_(device, image_bytes(device, lens, views), MemoryKind::kDevice, "rooms image"),
       depth_(device, pixels() * sizeof(float), MemoryKind::kDevice, "rooms depth"),
       label_(device, pixels() * sizeof(uint32_t), MemoryKind::kDevice, "rooms label") {
   Recorder recorder(device);

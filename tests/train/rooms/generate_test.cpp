@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
@@ -85,6 +84,17 @@ TEST(Generate, ASampleHoldsTheScene) {
     uint64_t shown = 0;
     for (const uint32_t id : layers.ids.pixels) shown += id == 1;
     EXPECT_EQ(json["frames"][4]["objects"][0]["pixels"], shown);
+  }
+}
+
+TEST(Generate, TheSameInGroupsOfAnySize) {
+  const TempFolder folder;
+  generate_rooms(test_device(), options(folder / "a", 4));
+  for (const uint64_t views : {1, 2, 7, 11}) {
+    GenerateOptions o = options(folder / fmt::format("{}", views), 4);
+    o.pixels_at_once = views * kLens.pixels();
+    generate_rooms(test_device(), o);
+    EXPECT_EQ(bytes_of(o.folder / "rooms-000000.tar"), bytes_of(folder / "a" / "rooms-000000.tar")) << views;
   }
 }
 

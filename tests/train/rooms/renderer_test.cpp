@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "runtime/transfer.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -264,6 +265,11 @@ TEST(RoomRenderer, AViewIsTheSameInAnyCompany) {
   EXPECT_EQ(one.planes(one.image()), three.planes(three.image().sub(bytes, bytes)));
   one.render({{&scenes[2], 6}});
   EXPECT_EQ(one.planes(one.image()), three.planes(three.image().sub(2 * bytes, bytes)));
+}
+
+TEST(RoomRenderer, TooMuchAtOnceIsAnError) {
+  test::expect_error([] { RoomRenderer(test_device(), Lens(4096, 4096, 1.5), RoomsConfig{}, 100); },
+                     {"4096 x 4096", "fewer"});
 }
 
 TEST(RoomRenderer, BothAccessPathsDrawTheSame) {

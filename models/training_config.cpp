@@ -16,6 +16,8 @@ TrainingStage read_stage(JsonObject object, const TrainingConfig& training, cons
   object.text("name", s.name);
   object.choices("networks", s.networks, kNetworkNames);
   object.choice("hypotheses", s.hypotheses, kHypothesesNames);
+  if (s.hypotheses == Hypotheses::kBackground && s.networks != std::vector{Network::kDepth})
+    object.refuse("networks", "must be [\"depth\"] where only the background's hypothesis warps");
   std::int64_t steps = 0;
   object.integer("steps", steps, 1, 1'000'000'000'000);
   if (steps > 0) s.steps = steps;

@@ -127,6 +127,8 @@ TEST(Config, RefusesWhatCannotBe) {
   EXPECT_NE(
       refusal(R"({"training": {"stages": [{"name": "a", "steps": 1}, {"name": "a"}]}})").find("stages[1].name"),
       std::string::npos);
+  EXPECT_NE(refusal(R"({"training": {"stages": [{"hypotheses": "background"}]}})").find("stages[0].networks"),
+            std::string::npos);
   EXPECT_NE(refusal(R"({"training": {"stages": [{"name": "../a"}]}})").find("stages[0].name"),
             std::string::npos);
   EXPECT_NE(refusal(R"({"training": {"learning_rate": 1e999}})").find("run.json"), std::string::npos);

@@ -1,0 +1,89 @@
+#include "train/progress.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace vkopple {
+namespace {
+
+constexpr double kSecondsBetweenLines = 10;
+// Share of the newest step in the mean time of steps, from which the time left is told.
+constexpr double kNewest = 0.05;
+
+/// Of a terminal: a longer line would wrap, and could not be rewritten.
+size_t columns(std::FILE* stream) {
+  winsize size{};
+  if (::ioctl(::fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return 80;
+  return size.ws_col;
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<uint64_t>(std::llround(std::fmax(seconds, 0)));
+  const uint64_t days = whole / 86400, hours = whole / 3600 % 24, minutes = whole / 60 % 60, rest = whole % 60;
+  if (days > 0) return fmt::format("{} d {}:{:02}:{:02}", days, hours, minutes, rest);
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, minutes, rest);
+  return fmt::format("{}:{:02}", minutes, rest);
+}
+
+std::string progress_line(const StepRecord& record, uint64_t total, double seconds_per_step) {
+  std::string line = fmt::format("{}/{} {}", record.step, total, record.stage);
+  if (const auto found = record.losses.find("total"); found != record.losses.end())
+    line += fmt::format("  total {:.4g}", found->second);
+  for (const auto& [name, value] : record.losses)
+    if (name != "total") line += fmt::format("  {} {:.4g}", name, value);
+  if (record.depth_r) line += fmt::format("  depth r {:.3f}", *record.depth_r);
+  const double rate = seconds_per_step > 0 ? record.batch / seconds_per_step : 0;
+  const uint64_t left = total > record.step ? total - record.step : 0;
+  return line + fmt::format("  {:.3g} triplets/s  {} left", rate,
+                            duration_text(static_cast<double>(left) * seconds_per_step));
+}
+
+Progress::Progress(uint64_t total) : Progress(stderr, ::isatty(STDERR_FILENO) == 1, total) {}
+
+Progress::~Progress() { end_line(); }
+
+void Progress::learn_pace(const StepRecord& record) {
+  if (record.stage != stage_) steps_of_stage_ = 0;
+  stage_ = record.stage;
+  // The first step of a stage also makes pipelines; the second forgets it.
+  const bool fresh = ++steps_of_stage_ <= 2;
+  seconds_per_step_ =
+      fresh ? record.seconds : seconds_per_step_ + kNewest * (record.seconds - seconds_per_step_);
+}
+
+void Progress::show(const StepRecord& record) {
+  learn_pace(record);
+  if (record.depth_r) depth_r_ = record.depth_r;
+
+  const auto now = std::chrono::steady_clock::now();
+  const bool due = !shown_ || std::chrono::duration<double>(now - *shown_).count() >= kSecondsBetweenLines;
+  if (!terminal_ && !due && record.step != total_) return;
+  shown_ = now;
+  StepRecord shown = record;
+  shown.depth_r = depth_r_;
+  const std::string line = progress_line(shown, total_, seconds_per_step_);
+  if (terminal_)
+    fmt::print(stream_, "\r{}\033[K", std::string_view(line).substr(0, columns(stream_) - 1));
+  else
+    fmt::print(stream_, "{}\n", line);
+  open_ = terminal_;
+  std::fflush(stream_);
+}
+
+void Progress::say(std::string_view text) {
+  end_line();
+  fmt::print(stream_, "{}\n", text);
+  std::fflush(stream_);
+}
+
+void Progress::end_line() {
+  if (open_) fmt::print(stream_, "\n");
+  open_ = false;
+}
+
+}  // namespace vkopple

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace vkopple {
+
+/// What lies where in the folder of a training run.
+class RunFolder {
+ public:
+  explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  /// Makes the folder where there is none. Throws Error.
+  void create() const;
+  /// Whether a run has left a checkpoint here.
+  bool holds_checkpoint() const;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path log() const { return path_ / "log.jsonl"; }
+  std::filesystem::path latest() const { return path_ / "latest.safetensors"; }
+  /// step-000123.safetensors
+  std::filesystem::path numbered(uint64_t step) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace vkopple

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace vkopple {
+
+/// Loss terms by name, "total" among them.
+using Losses = std::map<std::string, double>;
+
+/// What is told of a training step.
+struct StepRecord {
+  uint64_t step = 0;  ///< steps done, this one included
+  std::string stage;
+  int batch = 0;
+  Losses losses;
+  double seconds = 0;             ///< that it took
+  std::optional<double> depth_r;  ///< correlation with true depth in unseen rooms, where it was measured
+};
+
+}  // namespace vkopple

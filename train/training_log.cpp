@@ -1,0 +1,54 @@
+#include "train/training_log.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+std::string reason() { return std::generic_category().message(errno); }
+
+/// Whether a whole line tells of one of the first `step` steps.
+bool belongs(const std::string& line, uint64_t step) {
+  const auto json = nlohmann::json::parse(line, nullptr, false);
+  return json.is_object() && json.contains("step") && json["step"].is_number_unsigned() &&
+         json["step"].get<uint64_t>() <= step;
+}
+
+/// Bytes of a log up to the first line that does not belong.
+uint64_t bytes_to_keep(const std::filesystem::path& path, uint64_t step) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(fmt::format("{}: cannot be read: {}", path.string(), reason()));
+  uint64_t bytes = 0;
+  std::string line;
+  while (std::getline(file, line) && !file.eof() && belongs(line, step)) bytes += line.size() + 1;
+  return bytes;
+}
+
+}  // namespace
+
+TrainingLog::TrainingLog(std::filesystem::path path, uint64_t step) : path_(std::move(path)) {
+  if (std::filesystem::exists(path_)) {
+    std::error_code failure;
+    std::filesystem::resize_file(path_, bytes_to_keep(path_, step), failure);
+    if (failure) throw Error(fmt::format("{}: cannot be shortened: {}", path_.string(), failure.message()));
+  }
+  file_.open(path_, std::ios::binary | std::ios::app);
+  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
+}
+
+void TrainingLog::add(const StepRecord& record) {
+  nlohmann::ordered_json json{
+      {"step", record.step}, {"stage", record.stage}, {"losses", record.losses}, {"seconds", record.seconds}};
+  if (record.depth_r) json["depth_r"] = *record.depth_r;
+  file_ << json.dump() << '\n' << std::flush;
+  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
+}
+
+}  // namespace vkopple

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
+#include "train/step_record.h"
+
+namespace vkopple {
+
+/// The log of a run: a JSON object a line and step, {"step", "stage", "losses": {...}, "seconds", "depth_r"},
+/// the last only where it was measured. Throws Error naming the file.
+class TrainingLog {
+ public:
+  /// Opens it to go on after `step` steps: what it holds from the first line on that belongs to a later step,
+  /// or is no such line, is cut off.
+  TrainingLog(std::filesystem::path path, uint64_t step);
+
+  void add(const StepRecord& record);
+
+ private:
+  std::filesystem::path path_;
+  std::ofstream file_;
+};
+
+}  // namespace vkopple

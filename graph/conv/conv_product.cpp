@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "graph/conv/conv_tile.h"
@@ -161,11 +161,34 @@ std::string_view chosen_kernel(std::string_view kernel, const Caps& caps) {
   return kernel;
 }
 
-/// Workgroups in two directions, as many as `count` at least.
-Groups spread(uint64_t count, uint32_t phases, const Caps& caps) {
-  const uint64_t columns = std::min<uint64_t>(count, caps.max_groups[0]);
-  const uint64_t rows = (count + columns - 1) / columns;
-  return {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), phases * phases};
+ConvWork work_of(const ProductPush& push, int64_t out_channels, int64_t lanes) {
+  double taps = 0;  // in one direction, summed over phases
+  for (int a = 0; a < push.phases; ++a) taps += push.taps[a];
+  const double phases = push.phases;
+  return {.pixels = int64_t{push.n} * push.out_h * push.out_w,
+          .out_channels = out_channels,
+          .in4 = push.in4,
+          .taps = taps * taps / (phases * phases),
+          .lanes = lanes};
+}
+
+/// Vectors of input channels that a kernel takes in straight code instead of a loop: all or (0) none. Loops
+/// copy every sum, and long code is slow (limit measured on lavapipe).
+uint32_t straight_vectors(const ProductPush& push, const ConvTile& tile) {
+  constexpr int64_t kMost = 32;
+  const bool straight = push.in4 == 1 || push.in4 * tile.out4 * tile.pixels <= kMost;
+  return straight ? static_cast<uint32_t>(push.in4) : 0;
+}
+
+/// Workgroups for every tile of a phase in the first two directions, phases in the third.
+Groups groups_of(const ProductPush& push, const ConvTile& tile, int64_t lanes, const Caps& caps) {
+  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
+  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
+  const int64_t tile_pixels = lanes * tile.pixels;
+  const int64_t count = (push.n * rows * columns + tile_pixels - 1) / tile_pixels * push.tiles;
+  const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
+  return {static_cast<uint32_t>(x), static_cast<uint32_t>((count + x - 1) / x),
+          static_cast<uint32_t>(push.phases * push.phases)};
 }
 
 }  // namespace
@@ -185,28 +208,24 @@ uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
 
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
-  const Caps& caps = recorder.caps();
-  const std::string_view family = chosen_kernel(kernel, caps);
   const Packing packing(shape, direction);
   const Slice packed = scratch.sub(0, packing.bytes());
   packing.record(recorder, operands, packed);
 
+  const Caps& caps = recorder.caps();
+  const std::string_view family = chosen_kernel(kernel, caps);
   ProductPush push = product_push(shape, direction);
+  const ConvWork work = work_of(push, channels_of(shape, direction).out,
+                                family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
+  const ConvTile tile = family == kShuffle
+                            ? choose_shuffle_tile(work, std::max(1U, std::thread::hardware_concurrency()))
+                            : choose_uniform_tile(work);
   push.bias = static_cast<int32_t>(packing.weight_vectors());
-  const int64_t out = channels_of(shape, direction).out;
-  const uint32_t lanes = family == kShuffle ? caps.subgroup_size : caps.flat_workgroup();
-  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
-  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
-  const int64_t pixels = push.n * rows * columns;
-  const ConvTile tile = family == kShuffle ? choose_shuffle_tile(pixels * push.phases * push.phases, out, lanes)
-                                           : choose_uniform_tile(pixels, out, lanes);
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
-  const int64_t tile_pixels = static_cast<int64_t>(lanes) * tile.pixels;
-  const auto groups = static_cast<uint64_t>((pixels + tile_pixels - 1) / tile_pixels * push.tiles);
-  recorder.dispatch(
-      "conv_product." + std::string(family),
-      {lanes, static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels), operands.accumulate},
-      {operands.in, packed, operands.out}, push, spread(groups, static_cast<uint32_t>(push.phases), caps));
+  recorder.dispatch("conv_product." + std::string(family),
+                    {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4),
+                     static_cast<uint32_t>(tile.pixels), operands.accumulate, straight_vectors(push, tile)},
+                    {operands.in, packed, operands.out}, push, groups_of(push, tile, work.lanes, caps));
 }
 
 }  // namespace vkopple

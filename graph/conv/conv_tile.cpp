@@ -11,23 +11,31 @@ constexpr std::array<ConvTile, 11> kTiles{
 
 int64_t ceil_divide(int64_t a, int64_t b) { return (a + b - 1) / b; }
 
-/// Nanoseconds that a lane group takes for 4 input channels of one tap, as measured on lavapipe: 6 a fetch,
-/// 0.19 a multiply-add with its share of the shuffles, 0.25 for every sum's masked update.
-double step_cost(const ConvTile& tile) {
-  const double sums = 4.0 * tile.out4 * tile.pixels;
-  const double fetches = (tile.out4 + 1) / 2 + tile.pixels;
-  return 6 * fetches + (4 * 0.19 + 0.25) * sums;
+/// Nanoseconds that a subgroup of 8 lanes takes, fitted to measurements on lavapipe (2 cores of AMD Zen 5): 6
+/// for a fetch, 0.67 for 4 multiply-adds with their share of the shuffles, 0.5 for carrying a sum from tap to
+/// tap, 38 for a vector stored.
+double tile_cost(const ConvTile& tile, const ConvWork& work) {
+  const auto vectors = static_cast<double>(tile.out4 * tile.pixels);
+  const auto fetches = static_cast<double>((tile.out4 + 1) / 2 + tile.pixels);
+  const double step = 6 * fetches + 0.67 * 4 * vectors;
+  const double tap =
+      static_cast<double>(work.in4) * step + 0.5 * 4 * vectors + 4 * static_cast<double>(tile.pixels);
+  return work.taps * tap + 38 * vectors;
+}
+
+int64_t workgroups(const ConvTile& tile, const ConvWork& work) {
+  return ceil_divide(work.out_channels, 4 * tile.out4) * ceil_divide(work.pixels, work.lanes * tile.pixels);
 }
 
 }  // namespace
 
-ConvTile choose_shuffle_tile(int64_t pixels, int64_t out_channels, int64_t lanes) {
+ConvTile choose_shuffle_tile(const ConvWork& work, int64_t threads) {
   ConvTile best = kTiles.back();
   double best_cost = std::numeric_limits<double>::infinity();
   for (const ConvTile& tile : kTiles) {
-    if (tile.out4 == 1 && out_channels > 4) continue;
-    const int64_t groups = ceil_divide(out_channels, 4 * tile.out4) * ceil_divide(pixels, lanes * tile.pixels);
-    const double cost = step_cost(tile) * static_cast<double>(groups);
+    if (tile.out4 == 1 && work.out_channels > 4) continue;
+    const int64_t rounds = ceil_divide(workgroups(tile, work), threads);
+    const double cost = tile_cost(tile, work) * static_cast<double>(rounds);
     if (cost < best_cost) {
       best = tile;
       best_cost = cost;
@@ -36,12 +44,12 @@ ConvTile choose_shuffle_tile(int64_t pixels, int64_t out_channels, int64_t lanes
   return best;
 }
 
-ConvTile choose_uniform_tile(int64_t pixels, int64_t out_channels, int64_t lanes) {
-  // Enough workgroups to fill a device before tiles grow.
+ConvTile choose_uniform_tile(const ConvWork& work) {
+  // Tiles grow once there are workgroups enough to fill a device.
   constexpr int64_t kEnough = 256;
-  const int out4 = out_channels <= 4 ? 1 : 2;
-  for (const int many : {4, 2})
-    if (ceil_divide(pixels, lanes * many) * ceil_divide(out_channels, 4 * out4) >= kEnough) return {out4, many};
+  const int64_t out4 = work.out_channels <= 4 ? 1 : 2;
+  for (const int64_t pixels : {4, 2})
+    if (const ConvTile tile{out4, pixels}; workgroups(tile, work) >= kEnough) return tile;
   return {out4, 1};
 }
 

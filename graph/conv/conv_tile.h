@@ -6,15 +6,24 @@ namespace vkopple {
 
 /// What one invocation of conv_product makes.
 struct ConvTile {
-  int out4;    ///< vectors of 4 output channels: 1 (where there are no more than 4 channels), 2, 4 or 8
-  int pixels;  ///< 1, 2, 4 or 8
+  int64_t out4;  ///< vectors of 4 output channels: 1 (only where there are no more than 4 channels), 2, 4 or 8
+  int64_t pixels;  ///< 1, 2, 4 or 8
 };
 
 constexpr int64_t kMostTileChannels = 32;
 
-/// For register tiles with weights handed round a subgroup of `lanes`, `pixels` counting all that are made.
-ConvTile choose_shuffle_tile(int64_t pixels, int64_t out_channels, int64_t lanes);
+/// What a tile is chosen by.
+struct ConvWork {
+  int64_t pixels;  ///< that are made, of all images
+  int64_t out_channels;
+  int64_t in4;    ///< vectors of 4 input channels
+  double taps;    ///< that a pixel reads, on average
+  int64_t lanes;  ///< invocations of a workgroup
+};
+
+/// For register tiles with weights handed round a subgroup, on a CPU of `threads`.
+ConvTile choose_shuffle_tile(const ConvWork& work, int64_t threads);
 /// For kernels that load weights from the same address in all invocations.
-ConvTile choose_uniform_tile(int64_t pixels, int64_t out_channels, int64_t lanes);
+ConvTile choose_uniform_tile(const ConvWork& work);
 
 }  // namespace vkopple

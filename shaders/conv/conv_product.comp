@@ -18,8 +18,9 @@
 layout(constant_id = 1) const int kOut4 = 1;
 layout(constant_id = 2) const int kPixels = 1;
 layout(constant_id = 3) const uint kAccumulate = 0;  // 1: out += …
+layout(constant_id = 4) const int kIn4 = 0;          // p.in4, for straight code; 0: a loop
 const int kBlocks = (kOut4 + 1) / 2;                 // of 8 output channels
-const int kHalves = kOut4 < 2 ? 1 : 2;                 // vectors of a block
+const int kHalves = kOut4 < 2 ? 1 : 2;               // vectors of a block
 
 layout(push_constant) uniform Push {
   int n;
@@ -82,32 +83,77 @@ void find_pixels(int tile, int rows, int columns) {
 
 vec4 sums[kPixels][kOut4];
 
-// Adds the 4 input channels at `at[r] + shift` times the weights from `block` on, 8 output channels every `stride` vectors.
-#define ADD_CHANNELS(at, shift, block, stride)                                                                     \
-  {                                                                                                                \
-    vec4 v[kPixels];                                                                                               \
-    [[unroll]] for (int r = 0; r < kPixels; ++r) v[r] = input4(at[r], shift);                                      \
-    [[unroll]] for (int b = 0; b < kBlocks; ++b) {                                                                 \
-      LOAD_WEIGHTS((block) + b * (stride))                                                                         \
-      [[unroll]] for (int half_ = 0; half_ < kHalves; ++half_)                                                     \
-        [[unroll]] for (int o = 0; o < 4; ++o)                                                                     \
-          [[unroll]] for (int i = 0; i < 4; ++i) {                                                                 \
-            float s = WEIGHT(4 * half_ + o, i);                                                                    \
-            [[unroll]] for (int r = 0; r < kPixels; ++r)                                                           \
-              sums[r][2 * b + half_][o] = fma(s, v[r][i], sums[r][2 * b + half_][o]);                              \
-          }                                                                                                        \
-    }                                                                                                              \
-  }
-
 #ifdef SHUFFLE
 #define LOAD_WEIGHTS(from) vec4 mine = load4(weights, (from) + int(gl_SubgroupInvocationID & 7u));
 #define WEIGHT(o, i) from_lane(mine[i], o)
 #else
-#define LOAD_WEIGHTS(from)                                    \
-  vec4 all[8];                                                             \
+#define LOAD_WEIGHTS(from) \
+  vec4 all[8];             \
   [[unroll]] for (int o = 0; o < 4 * kHalves; ++o) all[o] = load4(weights, (from) + o);
 #define WEIGHT(o, i) all[o][i]
 #endif
+
+// Adds 4 input channels, at `at[r] + shift`, times the weights of 8 output channels from `block` on, of the next 8 `block_stride`
+// further on, … Two things were measured on lavapipe: with sums of 4 channels as one vector in the innermost loop it is 15 % slower;
+// and where a loop's end is not a constant that can be seen, it is not unrolled, and sums live in memory (20 times slower).
+void add_channels(int at[kPixels], int shift, int block, int block_stride) {
+  vec4 v[kPixels];
+  [[unroll]] for (int r = 0; r < kPixels; ++r) v[r] = input4(at[r], shift);
+  [[unroll]] for (int b = 0; b < kBlocks; ++b) {
+    LOAD_WEIGHTS(block + b * block_stride)
+    [[unroll]] for (int h = 0; h < kHalves; ++h)
+      [[unroll]] for (int o = 0; o < 4; ++o)
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+          float s = WEIGHT(4 * h + o, i);
+          [[unroll]] for (int r = 0; r < kPixels; ++r) sums[r][2 * b + h][o] = fma(s, v[r][i], sums[r][2 * b + h][o]);
+        }
+  }
+}
+
+void add_taps(int a, int b, int out_block) {
+  int block_stride = p.kernel * p.kernel * p.in4 * 8;
+  int begin = out_block / 2 * block_stride;
+  // Where the tap at offset (0, 0) reads; what lies beyond the last image is outside every row.
+  int yi[kPixels], xi[kPixels], at_in[kPixels];
+  [[unroll]] for (int r = 0; r < kPixels; ++r) {
+    yi[r] = image[r] < p.n ? row[r] * p.stride : kOutside;
+    xi[r] = column[r] * p.stride;
+    at_in[r] = (image[r] * p.in4 * p.h + yi[r]) * p.w + xi[r];
+  }
+  // One loop for both directions: every level of loops copies all sums.
+  int j = 0;
+  int k = 0;
+  for (int t = 0; t < p.taps[a] * p.taps[b]; ++t) {
+    int dy = p.base[a] + j * p.step;
+    int dx = p.base[b] + k * p.step;
+    int at[kPixels];
+    [[unroll]] for (int r = 0; r < kPixels; ++r) {
+      bool inside = uint(yi[r] + dy) < uint(p.h) && uint(xi[r] + dx) < uint(p.w);
+      at[r] = inside ? at_in[r] + (dy * p.w + dx) : kOutside;
+    }
+    int tap = (p.first[a] + j * p.tap_step) * p.kernel + p.first[b] + k * p.tap_step;
+    int block = begin + tap * p.in4 * 8;
+    if (kIn4 > 0) {
+      [[unroll]] for (int c = 0; c < kIn4; ++c) add_channels(at, c * p.h * p.w, block + c * 8, block_stride);
+    } else {
+      for (int c = 0; c < p.in4; ++c) add_channels(at, c * p.h * p.w, block + c * 8, block_stride);
+    }
+    ++k;
+    j = k == p.taps[b] ? j + 1 : j;
+    k = k == p.taps[b] ? 0 : k;
+  }
+}
+
+void store_sums(int a, int b, int out_block) {
+  int size = p.out_h * p.out_w;
+  int at[kPixels];
+  [[unroll]] for (int r = 0; r < kPixels; ++r)
+    at[r] = (image[r] * p.out4 + out_block) * size + (row[r] * p.phases + a) * p.out_w + column[r] * p.phases + b;
+  [[unroll]] for (int o = 0; o < kOut4; ++o)
+    if (out_block + o < p.out4)
+      [[unroll]] for (int r = 0; r < kPixels; ++r)
+        if (image[r] < p.n) add4(y, at[r] + o * size, sums[r][o], kAccumulate)
+}
 
 void main() {
   int a = int(gl_WorkGroupID.z) / p.phases;
@@ -116,38 +162,13 @@ void main() {
   int columns = (p.out_w - b + p.phases - 1) / p.phases;
   int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   int tile = group / p.tiles;
-  int out_tile = group - tile * p.tiles;
+  int out_block = (group - tile * p.tiles) * kOut4;
   if (tile * int(gl_WorkGroupSize.x) * kPixels >= p.n * rows * columns) return;
   find_pixels(tile, rows, columns);
-
-  int out_block = out_tile * kOut4;
   [[unroll]] for (int o = 0; o < kOut4; ++o) {
     vec4 start = load4(weights, p.bias + out_block + o);
     [[unroll]] for (int r = 0; r < kPixels; ++r) sums[r][o] = start;
   }
-  int size = p.h * p.w;
-  int block_stride = p.kernel * p.kernel * p.in4 * 8;
-  int weights_begin = out_block / 2 * block_stride;
-  for (int j = 0; j < p.taps[a]; ++j)
-    for (int k = 0; k < p.taps[b]; ++k) {
-      int at[kPixels];
-      [[unroll]] for (int r = 0; r < kPixels; ++r) {
-        int yi = row[r] * p.stride + p.base[a] + j * p.step;
-        int xi = column[r] * p.stride + p.base[b] + k * p.step;
-        bool inside = image[r] < p.n && yi >= 0 && yi < p.h && xi >= 0 && xi < p.w;
-        at[r] = inside ? (image[r] * p.in4 * p.h + yi) * p.w + xi : kOutside;
-      }
-      int tap = (p.first[a] + j * p.tap_step) * p.kernel + p.first[b] + k * p.tap_step;
-      int tap_begin = weights_begin + tap * p.in4 * 8;
-      for (int c = 0; c < p.in4; ++c) ADD_CHANNELS(at, c * size, tap_begin + c * 8, block_stride)
-    }
-
-  int out_size = p.out_h * p.out_w;
-  [[unroll]] for (int r = 0; r < kPixels; ++r)
-    if (image[r] < p.n) {
-      int pixel = (row[r] * p.phases + a) * p.out_w + column[r] * p.phases + b;
-      int at_out = (image[r] * p.out4 + out_block) * out_size + pixel;
-      [[unroll]] for (int o = 0; o < kOut4; ++o)
-        if (out_block + o < p.out4) add4(y, at_out + o * out_size, sums[r][o], kAccumulate)
-    }
+  add_taps(a, b, out_block);
+  store_sums(a, b, out_block);
 }

@@ -26,12 +26,13 @@ void check_slot_masks(CheckList& list) {
                     .inputs = {row_major(shape)},
                     .reference = reference,
                     .ranges = {{-4.0, 4.0}}});
-  // Logits that overflow exp() unless the largest is taken off first.
-  list.push_back({.label = "large logits",
-                  .op = std::make_shared<SlotMasks>(),
-                  .inputs = {row_major({3, 1, 4, 5})},
-                  .reference = reference,
-                  .ranges = {{95.0, 98.0}}});
+  // Logits that overflow exp() unless the largest of them and the background's 0 is taken off first.
+  for (const double sign : {-1.0, 1.0})
+    list.push_back({.label = "large logits",
+                    .op = std::make_shared<SlotMasks>(),
+                    .inputs = {row_major({3, 1, 4, 5})},
+                    .reference = reference,
+                    .ranges = {{sign * 95.0, sign * 98.0}}});
 }
 
 }  // namespace vkopple

@@ -138,26 +138,39 @@ class Bench {
   }
 
   void run_forward() {
-    for (size_t i = 0; i < x_.size(); ++i) {
-      input_.push_back(place(check_.inputs[i]));
-      write(input_.back(), as_words(check_.inputs[i], x_[i]));
-    }
+    for (size_t i = 0; i < x_.size(); ++i) input_.push_back(place(check_.inputs[i]));
     for (const TensorSpec& spec : specs_) output_.push_back(place(spec));
-    for (const TensorSpec& spec : needs_.saved) saved_.push_back(place(spec));
-    Recorder recorder(device_);
-    op_.record_forward(recorder, {input_, output_, saved_, scratch(needs_.forward_scratch)});
-    recorder.finish()->run();
     const HostTensors want = check_.reference(x_);
+    if (!needs_.saved.empty()) {
+      std::vector<Operand> unsaved;
+      for (const TensorSpec& spec : needs_.saved) unsaved.push_back({spec, {}});
+      record_forward(unsaved);
+      judge_forward("inference: ", want);
+    }
+    for (const TensorSpec& spec : needs_.saved) saved_.push_back(place(spec));
+    record_forward(saved_);
+    judge_forward("", want);
+  }
+
+  void record_forward(const std::vector<Operand>& saved) {
+    for (size_t i = 0; i < x_.size(); ++i) write(input_[i], as_words(check_.inputs[i], x_[i]));
+    for (const Operand& y : output_) write(y, std::vector<float>(y.spec.bytes() / 4, kNaN));
+    Recorder recorder(device_);
+    op_.record_forward(recorder, {input_, output_, saved, scratch(needs_.forward_scratch)});
+    recorder.finish()->run();
+  }
+
+  void judge_forward(const std::string& mode, const HostTensors& want) {
     size_t next = 0;
     for (const Operand& y : output_) {
-      judge(result_.forward, fmt::format("output {}", next), from_words(y.spec, read(y)).values,
-            want.at(next).values);
-      require_zero_padding(fmt::format("output {}", next), y);
+      const std::string what = fmt::format("{}output {}", mode, next);
+      judge(result_.forward, what, from_words(y.spec, read(y)).values, want.at(next).values);
+      require_zero_padding(what, y);
       ++next;
     }
     for (size_t i = 0; i < x_.size(); ++i)
       if (op_.mutates(i))
-        judge(result_.forward, fmt::format("updated input {}", i),
+        judge(result_.forward, fmt::format("{}updated input {}", mode, i),
               from_words(input_[i].spec, read(input_[i])).values, want.at(next++).values);
   }
 

@@ -79,9 +79,9 @@ struct CheckResult {
 constexpr double kWorstLimit = 1e-3;
 constexpr double kL2Limit = 1e-4;
 
-/// Runs one case: outputs pre-filled with NaN, forward against the reference, padding lanes zero, gradients
-/// against finite differences, then backward again onto existing gradients with the accumulate flag, expecting
-/// the sum.
+/// Runs one case: outputs pre-filled with NaN, forward against the reference (and without saved tensors, as in
+/// inference), padding lanes zero, gradients against finite differences, then backward again onto existing
+/// gradients with the accumulate flag, expecting the sum.
 CheckResult run_check(const Device& device, const CheckCase& check);
 
 /// An op and its cases; the build finds graph/checks/<op>.cpp, which defines `void check_<op>(CheckList&)`.

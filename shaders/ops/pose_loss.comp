@@ -2,6 +2,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "precise.glsl"
 
 // loss = sum over objects of q D(a, r) / B; objects are (b, k), log_a and log_r (objects, bins). With d = log_a - log_r:
 //   symmetric KL: D = 1/2 sum (a - r) d;  dD/dlog_a = 1/2 (a d + a - r),  dD/dlog_r = -1/2 (r d + a - r)
@@ -34,12 +35,12 @@ WRITE1(3, dq)
 #endif
 
 // log(a / m) from d = log a - log r: -log((1 + exp(-d)) / 2), written so that exp does not overflow.
-float log_over_mean(float d) { return 0.69314718 - max(-d, 0.0) - log(1.0 + exp(-abs(d))); }
+float log_over_mean(float d) { return 0.69314718 - max(-d, 0.0) - precise_log(1.0 + precise_exp(-abs(d))); }
 
 float bin_divergence(float u, float v) {
   float d = u - v;
-  if (kDivergence == 0) return 0.5 * (exp(u) - exp(v)) * d;
-  return 0.5 * (exp(u) * log_over_mean(d) + exp(v) * log_over_mean(-d));
+  if (kDivergence == 0) return 0.5 * (precise_exp(u) - precise_exp(v)) * d;
+  return 0.5 * (precise_exp(u) * log_over_mean(d) + precise_exp(v) * log_over_mean(-d));
 }
 
 float divergence(uint object) {
@@ -62,8 +63,8 @@ void main() {
   if (i >= p.objects * p.bins) return;
   float u = load1(log_a, i);
   float v = load1(log_r, i);
-  float a = exp(u);
-  float r = exp(v);
+  float a = precise_exp(u);
+  float r = precise_exp(v);
   float factor = 0.5 * p.scale * load1(dloss, 0) * load1(q, i / p.bins);
   float ga = kDivergence == 0 ? a * (u - v) + (a - r) : a * log_over_mean(u - v);
   float gr = kDivergence == 0 ? -r * (u - v) - (a - r) : r * log_over_mean(v - u);

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "flat4.glsl"
+#include "precise4.glsl"
 #if defined(FORWARD4) || defined(BACKWARD4)
 #define WIDE
 #endif
@@ -33,7 +34,7 @@ WRITE(2, dx)
 void main() {
 #if defined(FORWARD) || defined(FORWARD4)
   FOR4(i, flat_index() * 4, p.units, {
-    VALUE v = p.scale / (1.0 + exp(-LOAD(x, i))) + p.offset;
+    VALUE v = p.scale * precise_sigmoid(LOAD(x, i)) + p.offset;
     STORE(y, i, v * LANE_MASK(i, p.pixels, p.blocks, p.last))
   })
 #else

@@ -2,6 +2,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "precise4.glsl"
 #if !defined(FORWARD) && !defined(BACKWARD)
 #define WIDE
 #endif
@@ -59,15 +60,15 @@ void main() {
   }
   ROW sum = ROW(0);
   for (uint k = 0; k < steps(); ++k) {
-    VALUE v = exp(LOAD(x, first + k * p.inner) - largest);
+    VALUE v = precise_exp(LOAD(x, first + k * p.inner) - largest);
     sum += TOTAL(PRESENT(v, k));
   }
-  ROW shift = kLog ? largest + log(sum) : largest;
+  ROW log_sum = kLog ? precise_log(sum) : ROW(0);
   ROW factor = 1.0 / sum;
   for (uint k = 0; k < steps(); ++k) {
     uint at = first + k * p.inner;
-    VALUE v = LOAD(x, at) - shift;
-    if (!kLog) v = exp(v) * factor;
+    VALUE v = LOAD(x, at) - largest;
+    v = kLog ? v - log_sum : precise_exp(v) * factor;
     STORE(y, at, PRESENT(v, k))
   }
 #else
@@ -82,7 +83,7 @@ void main() {
     uint at = first + k * p.inner;
     VALUE out_ = LOAD(y, at);
     VALUE g = LOAD(dy, at);
-    VALUE v = kLog ? g - exp(out_) * sum : out_ * (g - sum);
+    VALUE v = kLog ? g - precise_exp(out_) * sum : out_ * (g - sum);
     ADD(dx, at, PRESENT(v, k), p.accumulate)
   }
 #endif

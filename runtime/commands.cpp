@@ -12,7 +12,7 @@ Commands::Commands(const Device& device) : device_(&device) {
   VkFenceCreateInfo fence{};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
   check(vkCreateFence(device.handle(), &fence, nullptr, &fence_), "vkCreateFence");
-  absent_ = std::make_unique<Buffer>(device, 256, MemoryKind::kDevice, "absent operand");
+  absent_ = std::make_unique<Buffer>(device, 2 * kAbsentBytes, MemoryKind::kDevice, "absent operand");
 }
 
 Commands::~Commands() {

@@ -135,7 +135,7 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
   std::vector<VkBufferView> views(bindings.size());
   std::vector<VkWriteDescriptorSet> writes(bindings.size());
   for (uint32_t i = 0; i < bindings.size(); ++i) {
-    const Slice slice = bindings[i] ? bindings[i] : commands_->absent_->whole();
+    const Slice slice = bindings[i] ? bindings[i] : commands_->absent(kinds[i] == BindingKind::kWrite);
     auto& write = writes[i];
     write = {};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -177,7 +177,11 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
   std::vector<Slice> reads;
   std::vector<Slice> writes;
   for (size_t i = 0; i < bindings.size(); ++i) {
-    if (!bindings[i]) continue;
+    if (!bindings[i]) {
+      // Two kernels that may write the absent operand are ordered like any others.
+      if (kinds[i] == BindingKind::kWrite) writes.push_back(commands_->absent(true));
+      continue;
+    }
     if (bindings[i].bytes > caps().max_storage_range)
       throw Error(
           fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; use a smaller --batch or "

@@ -67,7 +67,10 @@ class Commands {
   std::vector<VkCommandBuffer> buffers_;
   std::vector<VkDescriptorPool> descriptor_pools_;
   std::vector<std::string> sections_;  ///< section i has queries 2i and 2i + 1
-  std::unique_ptr<Buffer> absent_;     ///< bound where an optional operand is absent
+  static constexpr uint64_t kAbsentBytes = 256;
+  /// Bound where an optional operand is absent: one part where kernels would read, one where they would write.
+  Slice absent(bool writes) const { return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes); }
+  std::unique_ptr<Buffer> absent_;
   size_t dispatches_ = 0;
   size_t barriers_ = 0;
 };

@@ -52,6 +52,20 @@ TEST_F(RecorderTest, OrdersWriteAfterReadAndWriteAfterWrite) {
   EXPECT_EQ(recorder.finish()->barriers(), 2U);
 }
 
+TEST_F(RecorderTest, AbsentOperandsAreOrderedToo) {
+  const Slice a = allocate();
+  const Slice b = allocate();
+  Recorder recorder(test_device());
+  relu(recorder, {}, a);
+  relu(recorder, {}, b);  // both only read the absent operand
+  EXPECT_EQ(recorder.finish()->barriers(), 0U);
+  Recorder writing(test_device());
+  relu(writing, a, {});
+  relu(writing, a, {});  // the layer takes both for writes of the same bytes
+  relu(writing, {}, b);  // reading it needs no order
+  EXPECT_EQ(writing.finish()->barriers(), 1U);
+}
+
 TEST_F(RecorderTest, ReplaysGiveTheSameAndSeeNewInput) {
   const Slice a = allocate();
   const Slice b = allocate();

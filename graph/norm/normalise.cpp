@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "graph/kernels/words.h"
+
 namespace vkopple {
 namespace {
 
@@ -15,7 +17,6 @@ constexpr uint32_t kMostItems = 1024;
 constexpr uint32_t kPixelsEach = 16;
 
 uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
-uint32_t u32(int64_t value) { return static_cast<uint32_t>(value); }
 
 /// log2 of a stride: a subgroup reads a contiguous run, of no more pixels than there are.
 uint32_t lanes_for(uint32_t pixels, const Caps& caps) {

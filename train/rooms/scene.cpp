@@ -31,7 +31,7 @@ struct Layout {
     }
   };
   std::vector<Mover> movers;
-  std::vector<CameraPose> cameras;
+  std::vector<RoomCamera> cameras;
 };
 
 Layout draw_layout(const RoomsConfig& config, Random& random) {
@@ -47,7 +47,7 @@ Layout draw_layout(const RoomsConfig& config, Random& random) {
   }
   const double side = random.between(0, 2 * kPi);
   const double radius = random.between(1.6, 2.2);
-  CameraPose camera;
+  RoomCamera camera;
   camera.position = {radius * std::cos(side), radius * std::sin(side), kEyeHeight};
   camera.yaw = side + kPi / 2 + random.between(-0.3, 0.3);  // towards the room's middle, about
   for (int frame = 0; frame < config.frames; ++frame) {
@@ -63,7 +63,7 @@ Layout draw_layout(const RoomsConfig& config, Random& random) {
 
 /// Nothing touches anything in this frame.
 bool is_free(const Layout& layout, int frame) {
-  const CameraPose& camera = layout.cameras[static_cast<std::size_t>(frame)];
+  const RoomCamera& camera = layout.cameras[static_cast<std::size_t>(frame)];
   const Vec3& eye = camera.position;
   if (std::max(std::abs(eye[0]), std::abs(eye[1])) >= kRoomHalf - kCameraWall) return false;
   for (std::size_t i = 0; i < layout.movers.size(); ++i) {
@@ -83,7 +83,7 @@ bool is_free(const Layout& layout, int frame) {
 
 /// How many objects have their middle within nine tenths of the angle of view.
 int count_ahead(const Layout& layout, int frame, double half_view) {
-  const CameraPose& camera = layout.cameras[static_cast<std::size_t>(frame)];
+  const RoomCamera& camera = layout.cameras[static_cast<std::size_t>(frame)];
   int ahead = 0;
   for (const auto& mover : layout.movers) {
     const auto at = mover.at(frame);
@@ -164,14 +164,14 @@ Scene furnish(const Layout& layout, const RoomsConfig& config, Random& random) {
 
 }  // namespace
 
-std::array<Vec3, 3> CameraPose::rotation() const {
+std::array<Vec3, 3> RoomCamera::rotation() const {
   const double cy = std::cos(yaw), sy = std::sin(yaw), cp = std::cos(pitch), sp = std::sin(pitch);
   const double cr = std::cos(roll), sr = std::sin(roll);
   return {Vec3{cy * cr - sy * sp * sr, -sy * cp, cy * sr + sy * sp * cr},
           Vec3{sy * cr + cy * sp * sr, cy * cp, sy * sr - cy * sp * cr}, Vec3{-cp * sr, sp, cp * cr}};
 }
 
-Vec3 CameraPose::see(const Vec3& world) const {
+Vec3 RoomCamera::see(const Vec3& world) const {
   const auto r = rotation();
   Vec3 seen{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -180,7 +180,7 @@ Vec3 CameraPose::see(const Vec3& world) const {
   return seen;
 }
 
-std::array<float, 6> CameraPose::numbers() const {
+std::array<float, 6> RoomCamera::numbers() const {
   return {static_cast<float>(position[0]), static_cast<float>(position[1]), static_cast<float>(position[2]),
           static_cast<float>(yaw),         static_cast<float>(pitch),       static_cast<float>(roll)};
 }

@@ -18,7 +18,7 @@ inline constexpr double kEyeHeight = 0.7;
 
 /// A camera's place and attitude: camera to world is Rz(yaw) Rx(pitch) Ry(roll); camera frame x right, y
 /// forward, z up.
-struct CameraPose {
+struct RoomCamera {
   Vec3 position{};
   double yaw = 0, pitch = 0, roll = 0;
 
@@ -82,7 +82,7 @@ struct RoomObject {
 /// A room with moving objects seen by a moving camera.
 struct Scene {
   std::vector<RoomObject> objects;
-  std::vector<CameraPose> cameras;  ///< one a frame
+  std::vector<RoomCamera> cameras;  ///< one a frame
   Material wall, floor, ceiling;
   Vec3 light{};  ///< unit vector towards the light
 };

@@ -6,7 +6,7 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json frame_json(const Scene& scene, int frame, const std::vector<uint64_t>& pixels) {
-  const CameraPose& camera = scene.cameras[static_cast<std::size_t>(frame)];
+  const RoomCamera& camera = scene.cameras[static_cast<std::size_t>(frame)];
   ordered_json objects = ordered_json::array();
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const RoomObject& object = scene.objects[i];

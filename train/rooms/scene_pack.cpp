@@ -31,7 +31,7 @@ class Rows {
 
 void pack_view(const Scene& scene, int frame, std::vector<float>& out) {
   Rows rows(out);
-  const CameraPose& camera = scene.cameras.at(static_cast<std::size_t>(frame));
+  const RoomCamera& camera = scene.cameras.at(static_cast<std::size_t>(frame));
   rows.add(camera.position, static_cast<double>(scene.objects.size()));
   const auto rotation = camera.rotation();
   for (std::size_t i = 0; i < 3; ++i) rows.add(rotation[i], scene.light[i]);

@@ -60,7 +60,7 @@ constexpr double kSize = 0.5, kTall = 0.45;
 /// From where, and how the object is turned.
 struct Stand {
   double yaw;
-  CameraPose camera;
+  RoomCamera camera;
 };
 const Stand kStands[] = {{0.7, {{-0.2, -0.6, 1.3}, -0.25, -0.5, 0.1}},
                          {2.9, {{1.9, 1.5, 0.4}, 1.9, 0.1, 0}},

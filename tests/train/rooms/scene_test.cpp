@@ -50,8 +50,8 @@ TEST(RoomScene, MotionIsConstantForObjectsAndSmallForTheCamera) {
   for (int frame = 0; frame < 6; ++frame) {
     EXPECT_NEAR(object.position(frame + 1)[0] - object.position(frame)[0], object.velocity[0], 1e-12);
     EXPECT_NEAR(object.yaw(frame + 1) - object.yaw(frame), object.spin, 1e-12);
-    const CameraPose& a = scene.cameras[static_cast<std::size_t>(frame)];
-    const CameraPose& b = scene.cameras[static_cast<std::size_t>(frame) + 1];
+    const RoomCamera& a = scene.cameras[static_cast<std::size_t>(frame)];
+    const RoomCamera& b = scene.cameras[static_cast<std::size_t>(frame) + 1];
     EXPECT_LE(std::abs(b.position[0] - a.position[0]), 0.05);
     EXPECT_LE(std::abs(b.yaw - a.yaw), config.pan);
     EXPECT_NE(a.yaw, b.yaw);
@@ -113,7 +113,7 @@ TEST(RoomScene, NoSpaceIsAnError) {
 }
 
 TEST(RoomScene, CameraSeesForwardAlongY) {
-  CameraPose pose;
+  RoomCamera pose;
   pose.position = {1, 2, 3};
   pose.yaw = std::numbers::pi / 2;  // turned left: forward is -x of the world
   const Vec3 seen = pose.see({-4, 2, 3.5});

@@ -100,7 +100,7 @@ void check(const Device& device, const ConvShape& s, WeightGradientKernel kernel
   }
 }
 
-constexpr WeightGradientKernel kKernels[] = {WeightGradientKernel::kAuto, WeightGradientKernel::kSimple};
+constexpr WeightGradientKernel kKernels[] = {WeightGradientKernel::kSimple, WeightGradientKernel::kRegister};
 
 /// n, ci, h, w, co, ho, wo, kernel, stride, padding, dilation
 const std::vector<ConvShape>& shapes() {

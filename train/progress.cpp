@@ -1,24 +1,14 @@
 #include "train/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <cmath>
 
 namespace vkopple {
 namespace {
 
-constexpr double kSecondsBetweenLines = 10;
 // Share of the newest step in the mean time of steps, from which the time left is told.
 constexpr double kNewest = 0.05;
-
-/// Of a terminal: a longer line would wrap, and could not be rewritten.
-size_t columns(std::FILE* stream) {
-  winsize size{};
-  if (::ioctl(::fileno(stream), TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return 80;
-  return size.ws_col;
-}
 
 }  // namespace
 
@@ -43,10 +33,6 @@ std::string progress_line(const StepRecord& record, uint64_t total, double secon
                             duration_text(static_cast<double>(left) * seconds_per_step));
 }
 
-Progress::Progress(uint64_t total) : Progress(stderr, ::isatty(STDERR_FILENO) == 1, total) {}
-
-Progress::~Progress() { end_line(); }
-
 void Progress::learn_pace(const StepRecord& record) {
   if (record.stage != stage_) steps_of_stage_ = 0;
   stage_ = record.stage;
@@ -60,30 +46,10 @@ void Progress::show(const StepRecord& record) {
   learn_pace(record);
   if (record.depth_r) depth_r_ = record.depth_r;
 
-  const auto now = std::chrono::steady_clock::now();
-  const bool due = !shown_ || std::chrono::duration<double>(now - *shown_).count() >= kSecondsBetweenLines;
-  if (!terminal_ && !due && record.step != total_) return;
-  shown_ = now;
   StepRecord shown = record;
   shown.depth_r = depth_r_;
-  const std::string line = progress_line(shown, total_, seconds_per_step_);
-  if (terminal_)
-    fmt::print(stream_, "\r{}\033[K", std::string_view(line).substr(0, columns(stream_) - 1));
-  else
-    fmt::print(stream_, "{}\n", line);
-  open_ = terminal_;
-  std::fflush(stream_);
-}
-
-void Progress::say(std::string_view text) {
-  end_line();
-  fmt::print(stream_, "{}\n", text);
-  std::fflush(stream_);
-}
-
-void Progress::end_line() {
-  if (open_) fmt::print(stream_, "\n");
-  open_ = false;
+  line_.show(progress_line(shown, total_, seconds_per_step_), !begun_ || record.step == total_);
+  begun_ = true;
 }
 
 }  // namespace vkopple

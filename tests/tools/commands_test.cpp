@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "tests/support/program.h"
+
+namespace vkopple {
+namespace {
+
+using test::expect_failure;
+using test::expect_success;
+using test::run_vkopple;
+
+/// Commands are found by their files.
+std::set<std::string> command_names() {
+  std::set<std::string> names;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(VKOPPLE_SOURCE_DIR) / "tools" / "commands"))
+    if (entry.path().extension() == ".cpp") names.insert(entry.path().stem());
+  return names;
+}
+
+TEST(Commands, EveryHelpHasAnExample) {
+  ASSERT_TRUE(command_names().contains("devices"));
+  for (const std::string& name : command_names()) {
+    SCOPED_TRACE(name);
+    const auto outcome = run_vkopple({name, "--help"});
+    expect_success(outcome);
+    const size_t example = outcome.output.find("Example");
+    ASSERT_NE(example, std::string::npos);
+    EXPECT_NE(outcome.output.find("vkopple " + name, example), std::string::npos) << outcome.output;
+    EXPECT_TRUE(outcome.errors.empty()) << outcome.errors;
+  }
+}
+
+TEST(Commands, UnknownOptionsAreWrongUse) {
+  for (const std::string& name : command_names()) {
+    SCOPED_TRACE(name);
+    const auto outcome = run_vkopple({name, "--no-such-option"});
+    EXPECT_EQ(outcome.code, 2) << outcome.errors;
+    EXPECT_EQ(outcome.lines(), 1) << outcome.errors;
+    EXPECT_TRUE(outcome.output.empty()) << outcome.output;
+  }
+}
+
+TEST(Commands, WhatIsNoCommandIsWrongUse) {
+  expect_failure(run_vkopple({"paint"}), 2, {"paint"});
+  expect_failure(run_vkopple({}), 2, {"--help"});
+}
+
+TEST(Commands, TheHelpListsThemAll) {
+  const auto outcome = run_vkopple({"--help"});
+  expect_success(outcome);
+  for (const std::string& name : command_names())
+    EXPECT_NE(outcome.output.find("\n  " + name + " "), std::string::npos) << name;
+  expect_success(run_vkopple({"--version"}));
+}
+
+TEST(Commands, ADeviceThatIsNotThereIsNamed) {
+  expect_failure(run_vkopple({"gradcheck", "sigmoid", "--device", "no such device"}), 2, {"no such device"});
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -30,7 +30,11 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "vkopple: {} (see vkopple --help)\n", error.what());
+    const auto rest = app.remaining();
+    if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-'))
+      fmt::print(stderr, "vkopple: there is no command {} (see vkopple --help)\n", rest.front());
+    else
+      fmt::print(stderr, "vkopple: {} (see vkopple --help)\n", error.what());
     return kWrongUse;
   } catch (const vkopple::UsageError& error) {
     fmt::print(stderr, "vkopple: {}\n", error.what());

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -99,6 +100,43 @@ TEST(SplatDeterminismTest, TwoRunsGiveTheSameBitsWithEveryPointInOneCell) {
   const Results second = run(test_device(), points, 1.0F);
   EXPECT_EQ(first.outputs, second.outputs);
   EXPECT_EQ(first.gradients, second.gradients);
+}
+
+TEST(SplatDeterminismTest, ListsOfAnyLengthAreSorted) {
+  // The kernel alone: a device may happen to run threads in an order that needs no sorting.
+  constexpr uint32_t kImages = 2, kSlots = 60, kSide = 15, kCells = (kSide + 1) * (kSide + 1);
+  constexpr uint32_t kPoints = kSlots * kSide * kSide;
+  std::mt19937 random(7);
+  std::vector<uint32_t> starts;
+  std::vector<uint32_t> lists;
+  for (uint32_t image = 0; image < kImages; ++image) {
+    uint32_t sum = 0;
+    for (uint32_t cell = 0; cell < kCells; ++cell) {
+      starts.push_back(sum);
+      sum += (cell * 37 + image) % 103;
+    }
+    starts.push_back(sum);
+    ASSERT_LE(sum, kPoints);
+    for (uint32_t i = 0; i < kPoints; ++i) lists.push_back(i);
+    std::shuffle(lists.end() - kPoints, lists.end(), random);
+  }
+  const Device& device = test_device();
+  Arena arena(device, MemoryKind::kDevice, "lists");
+  const Slice on_device[]{arena.allocate(starts.size() * 4), arena.allocate(lists.size() * 4)};
+  upload_values<uint32_t>(device, on_device[0], starts);
+  upload_values<uint32_t>(device, on_device[1], lists);
+  Recorder recorder(device);
+  recorder.dispatch_flat("splat_lists.sort", kImages * kCells, {on_device[0], on_device[1]},
+                         std::array<uint32_t, 13>{kImages, kSlots, kSide, kSide, kCells});
+  recorder.finish()->run();
+  for (uint32_t image = 0; image < kImages; ++image)
+    for (uint32_t cell = 0; cell < kCells; ++cell) {
+      const auto at = [&](uint32_t c) {
+        return lists.begin() + image * kPoints + starts[image * (kCells + 1) + c];
+      };
+      std::sort(at(cell), at(cell + 1));
+    }
+  EXPECT_EQ(download_values<uint32_t>(device, on_device[1]), lists);
 }
 
 TEST(SplatDeterminismTest, SumsGoThroughThePointsInAscendingOrder) {

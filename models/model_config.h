@@ -11,7 +11,7 @@ namespace vkopple {
 
 /// How the predicted pose is held against the seen one: half the sum of both Kullback–Leibler divergences, or
 /// Jensen–Shannon.
-enum class PoseLoss { kKl, kJs };
+enum class PoseLossKind { kKl, kJs };
 inline constexpr std::array<std::string_view, 2> kPoseLossNames{"kl", "js"};
 
 /// What fixes the model's shapes and formulas. The defaults are the published model's. Angles in radians,
@@ -34,7 +34,7 @@ struct ModelConfig {
   double reg = 1.0;      ///< factor of the regularising losses
   bool warp = true;      ///< false: only the imagined image is used (an ablation)
   bool relaxed = false;  ///< true: learned motion; refused, it is not built yet
-  PoseLoss pose_loss = PoseLoss::kKl;
+  PoseLossKind pose_loss = PoseLossKind::kKl;
   std::array<double, 3> dropout{0.05, 0.05, 0.0005};  ///< depth, object, imagination network
 
   bool operator==(const ModelConfig&) const = default;

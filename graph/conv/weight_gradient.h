@@ -10,9 +10,9 @@ namespace vkopple {
 
 /// The kernels that compute a weight gradient.
 enum class WeightGradientKernel {
-  kAuto,    ///< the fastest that the device can run
-  kSimple,  ///< every shape on every device: pixels over the invocations of a workgroup, sums through shared
-            ///< memory
+  kAuto,      ///< the fastest that the device can run
+  kSimple,    ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
+  kRegister,  ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
 };
 
 /// Whether the device can run a kernel on this shape.

@@ -90,7 +90,7 @@ TEST(Config, FixtureMetadataIsAModel) {
   EXPECT_EQ(c.fov, ModelConfig{}.fov);
   EXPECT_EQ(c.imagine_width, 1);
   EXPECT_FALSE(c.warp);
-  EXPECT_EQ(c.pose_loss, PoseLoss::kJs);
+  EXPECT_EQ(c.pose_loss, PoseLossKind::kJs);
   EXPECT_EQ(c.dropout[0], 0);
 }
 

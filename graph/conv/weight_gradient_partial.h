@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+
+#include "graph/conv/conv_shape.h"
+#include "graph/tensor.h"
+#include "runtime/recorder.h"
+
+namespace vkopple {
+
+/// What the first stage of a weight gradient leaves for the second: the sums of each strip of gradient pixels,
+/// [strip][channel][tap][lane] vec4, channels padded to a multiple of 4. Lanes are vectors of 4 ci and channels
+/// are co, or the other way round.
+struct WeightGradientPartial {
+  int64_t strips = 1;
+  bool lanes_are_out = false;
+  bool flipped = false;  ///< taps run backwards
+};
+
+/// Vectors that one strip leaves, whichever way round.
+inline int64_t strip_vectors(const ConvShape& s) {
+  return 4 * blocks4(s.co) * blocks4(s.ci) * s.kernel * s.kernel;
+}
+
+/// The first stage of the simple kernel and how it cuts the sum.
+struct SimplePlan {
+  uint32_t lanes;  ///< invocations of a workgroup
+  int64_t strip_pixels;
+  WeightGradientPartial partial;
+};
+SimplePlan plan_simple(const ConvShape& shape);
+void record_simple(Recorder& recorder, const ConvShape& shape, const SimplePlan& plan, const Slice& x,
+                   const Slice& dy, const Slice& partial);
+
+/// The first stage of the register kernel: how it cuts the sum, and the tile that one lane holds.
+struct RegisterPlan {
+  ConvShape shape;  ///< as the kernel sees it
+  bool swapped;     ///< x and dy change places (stride 1)
+  uint32_t lanes;   ///< of a subgroup that share their pixels and differ in channels of dy
+  uint32_t channels;
+  uint32_t pixels;
+  bool window;  ///< one stretch of x serves all taps of a row
+  int64_t image_blocks;
+  int64_t strip_blocks;
+  WeightGradientPartial partial;
+};
+bool can_register(const ConvShape& shape, const Caps& caps);
+RegisterPlan plan_register(const ConvShape& shape, const Caps& caps);
+void record_register(Recorder& recorder, const RegisterPlan& plan, const Slice& x, const Slice& dy,
+                     const Slice& partial);
+
+}  // namespace vkopple

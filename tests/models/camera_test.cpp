@@ -1,0 +1,68 @@
+#include "models/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace vkopple {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+std::array<double, 3> transformed(const Matrix4& m, std::array<double, 3> p) {
+  std::array<double, 3> out{};
+  for (size_t i = 0; i < 3; ++i)
+    out[i] = m[4 * i] * p[0] + m[4 * i + 1] * p[1] + m[4 * i + 2] * p[2] + m[4 * i + 3];
+  return out;
+}
+
+void expect_near(const std::array<double, 3>& got, const std::array<double, 3>& want) {
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(got[i], want[i], 1e-12) << "component " << i;
+}
+
+TEST(CameraTest, YawTurnsLeft) {
+  // Turned left by a quarter, "forward" points to the world's -x.
+  expect_near(transformed(camera_to_world({1, 2, 3, kPi / 2, 0, 0}), {0, 1, 0}), {0, 2, 3});
+}
+
+TEST(CameraTest, PitchLiftsForwardAndRollTipsRight) {
+  expect_near(transformed(camera_to_world({0, 0, 0, 0, kPi / 2, 0}), {0, 1, 0}), {0, 0, 1});
+  expect_near(transformed(camera_to_world({0, 0, 0, 0, 0, kPi / 2}), {1, 0, 0}), {0, 0, -1});
+}
+
+TEST(CameraTest, RollActsFirstThenPitchThenYaw) {
+  // Right rolls down; pitch lifts what points down to forward; yaw turns forward to the left.
+  expect_near(transformed(camera_to_world({0, 0, 0, kPi / 2, kPi / 2, kPi / 2}), {1, 0, 0}), {-1, 0, 0});
+}
+
+TEST(CameraTest, RelativeMapsPointsFromOneCameraToTheOther) {
+  const CameraPose a{0.3, -0.2, 0.7, 0.4, 0.1, -0.05};
+  const CameraPose b{-0.1, 0.5, 0.6, -1.2, 0.02, 0.3};
+  const std::array<double, 3> in_a{0.5, 2, -0.3};
+  const auto world = transformed(camera_to_world(a), in_a);
+  expect_near(transformed(camera_to_world(b), transformed(relative(a, b), in_a)), world);
+}
+
+TEST(CameraTest, EgoMotionIsInTheFirstCamerasHeading) {
+  const auto m = ego_motion({0, 0, 0, kPi / 2, 0, 0}, {-1, 0.5, 0, kPi / 2 + 0.1, 0, 0});
+  expect_near(m, {0.5, 1, 0.1});
+}
+
+TEST(CameraTest, TurnsAreWrapped) {
+  EXPECT_NEAR(ego_motion({0, 0, 0, 3, 0, 0}, {0, 0, 0, -3, 0, 0})[2], 2 * kPi - 6, 1e-12);
+  EXPECT_NEAR(ego_motion({0, 0, 0, -3, 0, 0}, {0, 0, 0, 3, 0, 0})[2], 6 - 2 * kPi, 1e-12);
+}
+
+TEST(CameraTest, ResamplingIndicesAreWholeDegrees) {
+  const auto degrees = [](double d) { return resampling_index(d * kPi / 180); };
+  EXPECT_EQ(degrees(0), 180U);
+  EXPECT_EQ(degrees(-180), 0U);
+  EXPECT_EQ(degrees(180), 360U);
+  EXPECT_EQ(degrees(10.4), 190U);
+  EXPECT_EQ(degrees(10.6), 191U);
+  EXPECT_EQ(degrees(-10.6), 169U);
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -93,6 +93,14 @@ float precise_atan2(float y, float x) {
 
 float precise_sigmoid(float x) { return 1.0 / (1.0 + precise_exp(-x)); }
 
+float precise_tanh(float x) {
+  // Near 0 the quotient loses digits; there the Taylor series is within a rounding.
+  float z = x * x;
+  if (z < 0.09) return x + x * z * (-0.33333333 + z * (0.13333333 + z * (-0.053968254 + z * 0.021869489)));
+  float e = precise_exp(-2.0 * abs(x));
+  return sign(x) * (1.0 - e) / (1.0 + e);
+}
+
 // A sum that carries what rounding lost (Neumaier).
 struct PreciseSum {
   float sum;

@@ -1,46 +1,56 @@
 #include "graph/ops/adam.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "graph/checks/check.h"
 
 namespace vkopple {
+namespace {
+
+/// The new parameters, m, v and corrections.
+HostTensors adam_reference(const HostTensors& x, const AdamOptions& o) {
+  HostTensor p = x[0];
+  HostTensor m = x[2];
+  HostTensor v = x[3];
+  HostTensor c = x[4];
+  c.at(0) = c.at(0) * o.beta1 + 1 - o.beta1;
+  c.at(1) = c.at(1) * o.beta2 + 1 - o.beta2;
+  for (size_t i = 0; i < p.values.size(); ++i) {
+    const double g = std::clamp(x[1].values[i], -o.clip, o.clip);
+    m.values[i] = o.beta1 * m.values[i] + (1 - o.beta1) * g;
+    v.values[i] = o.beta2 * v.values[i] + (1 - o.beta2) * g * g;
+    p.values[i] -=
+        o.learning_rate / c.at(0) * m.values[i] / (std::sqrt(v.values[i]) / std::sqrt(c.at(1)) + o.epsilon);
+  }
+  return {p, m, v, c};
+}
+
+/// steps: how many came before; 0 starts with state of zeros, as training does.
+CheckCase adam_case(int64_t size, int steps, const AdamOptions& o) {
+  const TensorSpec flat = row_major({size});
+  return {.label = fmt::format("{} elements after {} steps, clip {}", size, steps, o.clip),
+          .op = std::make_shared<Adam>(o),
+          .inputs = {flat, flat, flat, flat, row_major({2})},
+          .reference = [=](const HostTensors& x) { return adam_reference(x, o); },
+          .ranges = {{-1, 1}, {-3, 3}, {-1, 1}, {0, 1}, {0, 1}},
+          .prepare =
+              [=](HostTensors& x) {
+                x[4].values = {1 - std::pow(o.beta1, steps), 1 - std::pow(o.beta2, steps)};
+                if (steps > 0) return;
+                for (size_t i : {2, 3}) std::fill(x[i].values.begin(), x[i].values.end(), 0.0);
+              }};
+}
+
+}  // namespace
 
 void check_adam(CheckList& list) {
-  const AdamOptions options{.learning_rate = 0.01F, .clip = 0.5F};
-  const auto reference = [options](const HostTensors& x) {
-    // β as the shader has them, in float; 1 − βᵗ by the recurrence's definition.
-    const auto b1 = static_cast<double>(options.beta1);
-    const auto b2 = static_cast<double>(options.beta2);
-    const auto clip = static_cast<double>(options.clip);
-    HostTensor p = x[0];
-    HostTensor m = x[2];
-    HostTensor v = x[3];
-    HostTensor c = x[4];
-    c.values[0] = b1 * c.values[0] + (1 - b1);
-    c.values[1] = b2 * c.values[1] + (1 - b2);
-    for (size_t i = 0; i < p.values.size(); ++i) {
-      const double g = std::clamp(x[1].values[i], -clip, clip);
-      m.values[i] = b1 * m.values[i] + (1 - b1) * g;
-      v.values[i] = b2 * v.values[i] + (1 - b2) * g * g;
-      p.values[i] -= static_cast<double>(options.learning_rate) / c.values[0] * m.values[i] /
-                     (std::sqrt(v.values[i]) / std::sqrt(c.values[1]) + static_cast<double>(options.epsilon));
-    }
-    return HostTensors{p, m, v, c};
-  };
-  for (const int64_t count : {1, 3, 64, 1031})
-    for (const bool first_step : {true, false})
-      list.push_back({.label = std::to_string(count) + (first_step ? " first step" : " later"),
-                      .op = std::make_shared<Adam>(options),
-                      .inputs = {row_major({count}), row_major({count}), row_major({count}), row_major({count}),
-                                 row_major({2})},
-                      .reference = reference,
-                      .ranges = {{-1, 1}, {-1, 1}, {-0.1, 0.1}, {1e-4, 0.01}, {0.2, 0.9}},
-                      .prepare = [first_step](HostTensors& x) {
-                        if (!first_step) return;
-                        for (size_t i : {2, 3, 4}) std::fill(x[i].values.begin(), x[i].values.end(), 0.0);
-                      }});
+  list.push_back(adam_case(4, 0, {.learning_rate = 0.1}));
+  list.push_back(adam_case(64, 0, {.learning_rate = 0.1, .clip = 1}));
+  list.push_back(adam_case(1036, 3, {.learning_rate = 0.1, .clip = 2.5}));
+  list.push_back(adam_case(260, 1000, {.learning_rate = 0.1, .beta1 = 0.5, .beta2 = 0.9, .epsilon = 0.1}));
 }
 
 }  // namespace vkopple

@@ -2,59 +2,87 @@
 
 #include <fmt/format.h>
 
+#include "graph/kernels/words.h"
+
 namespace vkopple {
 namespace {
+
+enum Input : size_t { kParameters, kGradient, kM, kV, kCorrection };
 
 struct CorrectionPush {
   float beta1;
   float beta2;
+  float rest1;  ///< 1 − beta1, from double: float32 would lose digits
+  float rest2;
 };
 
 struct AdamPush {
-  uint32_t count;
+  uint32_t vectors;
   float learning_rate;
   float beta1;
   float beta2;
+  float rest1;
+  float rest2;
   float epsilon;
   float clip;
 };
 
+bool is_decay(double beta) { return beta >= 0 && beta < 1; }
+
 }  // namespace
 
+Adam::Adam(const AdamOptions& options) : options_(options) {
+  require(options.learning_rate >= 0,
+          fmt::format("the learning rate must not be negative: {}", options.learning_rate));
+  require(is_decay(options.beta1) && is_decay(options.beta2),
+          fmt::format("the betas must be in [0, 1), not {} and {}", options.beta1, options.beta2));
+  require(options.epsilon > 0, fmt::format("epsilon must be positive, not {}", options.epsilon));
+  require(options.clip > 0, fmt::format("the clip must be positive, not {}", options.clip));
+}
+
 std::vector<TensorSpec> Adam::infer(std::span<const TensorSpec> x) const {
-  require(x.size() == 5, "takes parameters, gradient, m, v and correction");
-  for (size_t i = 1; i < 4; ++i)
-    require(
-        x[i] == x[0] && x[0].layout == Layout::kRowMajor,
-        fmt::format("parameters {} and input {} of shape {} differ", x[0].shape.text(), i, x[i].shape.text()));
-  require(x[4] == row_major({2}), "the correction has shape (2), not " + x[4].shape.text());
+  require(x.size() == 5, "takes parameters, gradient, m, v and the corrections");
+  const TensorSpec& flat = x[kParameters];
+  require(flat == row_major({flat.shape.elements()}) && flat.shape.elements() % 4 == 0,
+          fmt::format("takes a group's flat tensor, not {}", flat.shape.text()));
+  for (size_t i : {kGradient, kM, kV})
+    require(x[i] == flat, fmt::format("input {} must be as large as the parameters {}, not {}", i,
+                                      flat.shape.text(), x[i].shape.text()));
+  require(x[kCorrection] == row_major({2}), "the corrections must be two numbers");
   return {};
 }
 
 Needs Adam::needs(std::span<const TensorSpec>, const Caps&) const { return {}; }
 
 void Adam::record_forward(Recorder& recorder, const Forward& io) const {
-  const CorrectionPush correction{options_.beta1, options_.beta2};
-  recorder.dispatch("adam_correction", {1}, {io.x[4].slice}, correction, {1, 1, 1});
-  const AdamPush push{static_cast<uint32_t>(io.x[0].shape().elements()),
-                      options_.learning_rate,
-                      options_.beta1,
-                      options_.beta2,
-                      options_.epsilon,
-                      options_.clip};
-  recorder.dispatch_flat("adam", (push.count + 3) / 4,
-                         {io.x[0].slice, io.x[1].slice, io.x[2].slice, io.x[3].slice, io.x[4].slice}, push);
+  const auto f32 = [](double v) { return static_cast<float>(v); };
+  const CorrectionPush correction{f32(options_.beta1), f32(options_.beta2), f32(1 - options_.beta1),
+                                  f32(1 - options_.beta2)};
+  recorder.dispatch_flat("adam.correction", 1, {io.x[kCorrection].slice}, correction);
+  const AdamPush push{.vectors = words(io.x[kParameters]) / 4,
+                      .learning_rate = f32(options_.learning_rate),
+                      .beta1 = correction.beta1,
+                      .beta2 = correction.beta2,
+                      .rest1 = correction.rest1,
+                      .rest2 = correction.rest2,
+                      .epsilon = f32(options_.epsilon),
+                      .clip = f32(options_.clip)};
+  recorder.dispatch_flat(
+      "adam.apply", (push.vectors + 3) / 4,
+      {io.x[kGradient].slice, io.x[kCorrection].slice, io.x[kParameters].slice, io.x[kM].slice, io.x[kV].slice},
+      push);
 }
 
 void Adam::record_backward(Recorder&, const Backward&) const {}
 
 void adam(Graph& graph, const std::string& group, const AdamOptions& options) {
   const Value parameters = graph.group(group);
+  const Value gradient = graph.gradient(group);
   const std::string state = "adam/" + group;
   const Value m = graph.state(state, state + "/m", parameters.spec());
   const Value v = graph.state(state, state + "/v", parameters.spec());
   const Value correction = graph.state(state, state + "/correction", row_major({2}));
-  graph.update(std::make_shared<Adam>(options), {parameters, graph.gradient(group), m, v, correction});
+  graph.update(std::make_shared<Adam>(options), {parameters, gradient, m, v, correction});
 }
 
 }  // namespace vkopple

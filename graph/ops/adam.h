@@ -1,26 +1,29 @@
 #pragma once
 
+#include <limits>
+#include <string>
+
 #include "graph/graph.h"
 
 namespace vkopple {
 
 struct AdamOptions {
-  float learning_rate = 3e-4F;
-  float beta1 = 0.9F;
-  float beta2 = 0.999F;
-  float epsilon = 1e-6F;
-  float clip = 1.0F;  ///< gradients are clipped by value to ±clip first
+  double learning_rate = 3e-4;
+  double beta1 = 0.9;
+  double beta2 = 0.999;
+  double epsilon = 1e-6;
+  double clip = std::numeric_limits<double>::infinity();  ///< largest magnitude of a gradient's element
 };
 
-/// One step of Adam (Kingma and Ba, 2015) on flat tensors of one size, in place:
-///   g = clamp(gradient, ±clip); m = β₁ m + (1 − β₁) g; v = β₂ v + (1 − β₂) g²; p −= lr / c₁ · m / (√v / √c₂ +
-///   ε)
-/// Inputs: parameters, gradient, m, v, and correction (2) = (c₁, c₂) = (1 − β₁ᵗ, 1 − β₂ᵗ) of the steps before,
-/// zeros at first. The corrections follow c ← β c + (1 − β), which keeps the digits that a float power would
-/// lose.
+/// One step of Adam on flat tensors, PyTorch's formula (spec section 7), with g = clamp(gradient, ±clip):
+///   m ← β₁ m + (1 − β₁) g,  v ← β₂ v + (1 − β₂) g²
+///   p ← p − learning_rate / c₁ · m / (√v / √c₂ + epsilon)
+/// c₁ = 1 − β₁ᵗ and c₂ = 1 − β₂ᵗ grow by c ← c β + (1 − β), which keeps digits that a power in float32 would
+/// lose. A NaN in the gradient is not clipped: it shows in the parameters.
+/// Inputs: p, gradient, m, v (N, a multiple of 4), c (2); all but the gradient are updated. No outputs.
 class Adam : public Op {
  public:
-  explicit Adam(const AdamOptions& options) : options_(options) {}
+  explicit Adam(const AdamOptions& options);
   std::string_view name() const override { return "adam"; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
@@ -33,8 +36,8 @@ class Adam : public Op {
   AdamOptions options_;
 };
 
-/// Adds the update of a parameter group from its gradient, with the state group "adam/<group>". Call it after
-/// the group's last parameter was declared.
+/// Adds the update of a parameter group by its gradient, after all of the group's parameters are declared. Its
+/// state is the group "adam/<group>": adam/<group>/m, …/v, and …/correction, which holds c₁ and c₂.
 void adam(Graph& graph, const std::string& group, const AdamOptions& options);
 
 }  // namespace vkopple

@@ -1,33 +1,55 @@
+// variants: correction apply
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "flat4.glsl"
 
-// One Adam step on flat tensors, in place; the formula is in graph/ops/adam.h. One invocation takes 4 consecutive numbers.
+// Adam on flat tensors, whose lengths are multiples of 4; the formula is in graph/ops/adam.h.
+// correction: c = (1 - beta1^t, 1 - beta2^t), one step further. apply: one invocation takes 4 consecutive vectors.
+#ifdef CORRECTION
 layout(push_constant) uniform Push {
-  uint count;
+  float beta1;
+  float beta2;
+  float rest1;
+  float rest2;
+} p;
+WRITE1(0, c)
+
+void main() {
+  if (flat_index() != 0) return;
+  c[0] = c[0] * p.beta1 + p.rest1;
+  c[1] = c[1] * p.beta2 + p.rest2;
+}
+#else
+layout(push_constant) uniform Push {
+  uint vectors;
   float learning_rate;
   float beta1;
   float beta2;
+  float rest1;
+  float rest2;
   float epsilon;
   float clip;
 } p;
-
-WRITE1(0, parameters)
-READ1(1, gradient)
-WRITE1(2, first)
-WRITE1(3, second)
-READ1(4, correction)
+READ4(0, gradient)
+READ1(1, c)
+WRITE4(2, parameters)
+WRITE4(3, m)
+WRITE4(4, v)
 
 void main() {
-  uint begin = flat_index() * 4u;
-  float step = p.learning_rate / load1(correction, 0);
-  float root = sqrt(load1(correction, 1));
-  for (uint i = begin; i < min(begin + 4u, p.count); ++i) {
-    float g = clamp(load1(gradient, i), -p.clip, p.clip);
-    float m = p.beta1 * first[i] + (1.0 - p.beta1) * g;
-    float v = p.beta2 * second[i] + (1.0 - p.beta2) * g * g;
-    first[i] = m;
-    second[i] = v;
-    parameters[i] -= step * m / (sqrt(v) / root + p.epsilon);
-  }
+  float rate = p.learning_rate / load1(c, 0);
+  float root = sqrt(load1(c, 1));
+  FOR4(i, flat_index() * 4, p.vectors, {
+    vec4 g = load4(gradient, i);
+    // Comparisons that a NaN fails: it stays.
+    g = mix(g, vec4(p.clip), greaterThan(g, vec4(p.clip)));
+    g = mix(g, vec4(-p.clip), lessThan(g, vec4(-p.clip)));
+    vec4 mean = p.beta1 * stored4(m, i) + p.rest1 * g;
+    vec4 square = p.beta2 * stored4(v, i) + p.rest2 * g * g;
+    store4(m, i, mean)
+    store4(v, i, square)
+    store4(parameters, i, stored4(parameters, i) - rate * mean / (sqrt(square) / root + p.epsilon))
+  })
 }
+#endif

@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "graph/executor.h"
+#include "graph/ops/adam.h"
+#include "graph/ops/linear.h"
+#include "tests/support/test_device.h"
+
+namespace vkopple {
+namespace {
+
+/// With a loss w · x the gradient of w is x at every step; then Adam moves w by learning_rate · g / (|g| +
+/// epsilon) exactly, however many steps came before.
+TEST(AdamTest, AConstantGradientMovesParametersAtAConstantRate) {
+  constexpr int kSteps = 300;
+  constexpr double kRate = 0.01;
+  constexpr double kEpsilon = 0.1;
+  const std::vector<float> gradient{0.5F, -0.25F, 3.0F, 0.0F, -7.0F};
+  Graph graph;
+  const Value x = graph.input("x", row_major({1, 5}));
+  const Value w = graph.parameter("net", "w", {1, 5});
+  const Value other = graph.parameter("net", "unused", {3});
+  const Value loss = graph.reshape(linear(x, w, {}), row_major({1}));
+  adam(graph, "net", {.learning_rate = kRate, .epsilon = kEpsilon, .clip = 2});
+  Executor executor(test_device(), graph, {.groups = {}, .loss = loss, .trained = {"net"}});
+  executor.write(x, gradient);
+  executor.write(w, std::vector<float>(5, 1.0F));
+  executor.write(other, std::vector<float>{1, 2, 3});
+  for (int step = 0; step < kSteps; ++step) {
+    executor.forward();
+    executor.backward();
+    executor.update();
+  }
+  const auto moved = executor.read(w);
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    const double g = std::min(std::max(static_cast<double>(gradient[i]), -2.0), 2.0);
+    EXPECT_NEAR(moved[i], 1 - kSteps * kRate * g / (std::abs(g) + kEpsilon), 2e-5) << i;
+  }
+  EXPECT_EQ(executor.read(other), (std::vector<float>{1, 2, 3}));
+  const auto correction = executor.read(graph.find("adam/net/correction"));
+  EXPECT_NEAR(correction[1], 1 - std::pow(0.999, kSteps), 1e-6);
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "graph/checks/check.h"
+#include "models/model_check.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "tools/command.h"
@@ -70,6 +71,16 @@ void print_row(const Summary& s) {
   for (const auto& failure : s.failures) fmt::print("    {}\n", failure);
 }
 
+void print_row(const DirectionalCheck& c) {
+  fmt::print("model, {:<11} along {:<9} derivative {:>12.6g}, differences {:>12.6g}   {}\n", c.group,
+             c.direction, c.analytic, c.numeric, c.passed() ? "ok" : "FAILED");
+}
+
+nlohmann::ordered_json to_json(const DirectionalCheck& c) {
+  return {{"network", c.group},      {"direction", c.direction}, {"derivative", c.analytic},
+          {"difference", c.numeric}, {"limit", c.limit},         {"passed", c.passed()}};
+}
+
 nlohmann::ordered_json to_json(const Summary& s) {
   return {{"op", s.op},
           {"cases", s.cases},
@@ -83,7 +94,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
 void run(const Options& options) {
   const auto checks = chosen_checks(options);
   const Device device({.selector = options.device});
-  auto list = nlohmann::ordered_json::array();
+  nlohmann::ordered_json out{{"ops", nlohmann::ordered_json::array()}};
   bool failed = false;
   if (!options.json)
     fmt::print("{:<22} {:>5}   {:>17}   {:>17}\n{:<22} {:>5}   {:>8} {:>8}   {:>8} {:>8}\n", "", "",
@@ -92,11 +103,20 @@ void run(const Options& options) {
     const Summary summary = run_op(device, op);
     failed = failed || !summary.failures.empty();
     if (options.json)
-      list.push_back(to_json(summary));
+      out["ops"].push_back(to_json(summary));
     else
       print_row(summary);
   }
-  if (options.json) fmt::print("{}\n", list.dump(2));
+  if (options.all) {
+    for (const DirectionalCheck& c : check_model(device)) {
+      failed = failed || !c.passed();
+      if (options.json)
+        out["model"].push_back(to_json(c));
+      else
+        print_row(c);
+    }
+  }
+  if (options.json) fmt::print("{}\n", out.dump(2));
   if (failed) throw CLI::RuntimeError(1);
 }
 
@@ -107,7 +127,8 @@ void add_gradcheck(CLI::App& app) {
       "gradcheck", "Check ops against plain double-precision references and finite differences");
   const auto options = std::make_shared<Options>();
   command->add_option("op", options->ops, "Ops to check, as their files are called");
-  command->add_flag("--all", options->all, "Check every op");
+  command->add_flag("--all", options->all,
+                    "Check every op, and the whole model along directions in its parameters");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   command->footer("Examples: vkopple gradcheck conv2d lstm\n          vkopple gradcheck --all --json");

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vkopple {
+
+class Device;
+
+/// The derivative of the total loss along one direction in one network's parameters.
+struct DirectionalCheck {
+  std::string group;      ///< "depth", "object", "imagination"
+  std::string direction;  ///< "gradient" or "random"
+  double analytic = 0;    ///< gradient · direction, from the backward pass
+  double numeric = 0;     ///< central difference of the forward pass
+  double limit =
+      0;  ///< of the difference: relative to the gradient's length, which float32 forward passes allow
+  bool passed() const;
+};
+
+/// Checks the whole model at once: a small one, in training mode with dropout, on made-up images. What single
+/// ops' checks can't see is how they are put together.
+std::vector<DirectionalCheck> check_model(const Device& device);
+
+}  // namespace vkopple

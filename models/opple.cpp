@@ -1,0 +1,249 @@
+#include "models/opple.h"
+
+#include <fmt/format.h>
+
+#include "graph/ops/align.h"
+#include "graph/ops/back_project.h"
+#include "graph/ops/blend.h"
+#include "graph/ops/centre_loss.h"
+#include "graph/ops/collapse_loss.h"
+#include "graph/ops/image_loss.h"
+#include "graph/ops/imagination_condition.h"
+#include "graph/ops/imagination_input.h"
+#include "graph/ops/imagination_mix.h"
+#include "graph/ops/location_loss.h"
+#include "graph/ops/move_background.h"
+#include "graph/ops/move_pixels.h"
+#include "graph/ops/pose_loss.h"
+#include "graph/ops/project.h"
+#include "graph/ops/relayout.h"
+#include "graph/ops/slice.h"
+#include "graph/ops/splat.h"
+#include "graph/ops/warp_share.h"
+#include "graph/ops/weighted_sum.h"
+#include "models/depth_net.h"
+#include "models/imagination_net.h"
+#include "models/network_options.h"
+#include "models/object_net.h"
+#include "models/pose_resampling.h"
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+constexpr int64_t kFrames = 3;
+
+float as_float(double value) { return static_cast<float>(value); }
+
+}  // namespace
+
+Opple::Opple(Graph& graph, const ModelConfig& config, const OppleOptions& options)
+    : graph_(&graph), config_(config), options_(options) {
+  declare_inputs();
+  if (options.background_only)
+    build_background_only();
+  else
+    build_all();
+}
+
+void Opple::declare_inputs() {
+  const int64_t b = options_.batch;
+  Graph& g = *graph_;
+  images_ = g.input("images", row_major({kFrames * b, 3, config_.height, config_.width}));
+  image2_ = take_outer(images_, b, b);
+  image3_ = take_outer(images_, 2 * b, b);
+  random_ = g.state("random", "random", unsigned_ints({2}));
+  camera_.m23 = g.input("m23", row_major({b, 4, 4}));
+  if (options_.background_only) return;
+  camera_.m12 = g.input("m12", row_major({b, 4, 4}));
+  camera_.ego23 = g.input("ego23", row_major({b, 3}));
+  camera_.index12 = g.input("index12", unsigned_ints({b}));
+  camera_.index23 = g.input("index23", unsigned_ints({b}));
+  camera_.resampling = g.input("resampling", row_major({kResamplingAngles, config_.bins, config_.bins}));
+  permutation_ = g.input("permutation", unsigned_ints({b}));
+}
+
+LayerFactory& Opple::factory(const std::string& group) {
+  const auto found = factories_.find(group);
+  if (found != factories_.end()) return found->second;
+  const NetworkOptions network =
+      network_options(config_, group, options_.training, random_, options_.max_tensor_bytes);
+  return factories_.emplace(group, LayerFactory(*graph_, network)).first->second;
+}
+
+/// The depth network alone: the warped image, and where nothing lands the frame before.
+void Opple::build_background_only() {
+  const Value depth = depth_net(factory("depth"), config_, to_channels4(image2_), 1);
+  const Value points = back_project(depth, as_float(config_.fov));
+  const Value moved = move_background(points, camera_.m23);
+  Graph& g = *graph_;
+  const Value ones = g.input("ones", row_major({options_.batch, 1, config_.height, config_.width}));
+  const auto warp = splat(image2_, project(moved, as_float(config_.fov)), ones, as_float(config_.beta));
+  share_ = warp_share(warp[2], true);
+  predicted_ = blend(share_, warp[0], image2_);
+  keep("depth", depth);
+  keep("predicted", predicted_);
+  losses_["image"] = image_loss(predicted_, image3_);
+  losses_["total"] = losses_["image"];
+  loss_ = losses_["total"];
+  for (const auto& [name, value] : losses_) g.keep("loss/" + name, value);
+}
+
+std::vector<ObjectState> Opple::see_objects(Value images4) {
+  LayerFactory& layers = factory("object");
+  const int64_t b = options_.batch;
+  std::vector<ObjectState> states;
+  const auto add_states = [&](const ObjectOutputs& out, int64_t frames) {
+    const Shape& raw = out.raw.shape();
+    const Shape& logits = out.mask_logits.shape();
+    for (int64_t f = 0; f < frames; ++f)
+      states.push_back(object_state(
+          config_, graph_->reshape(take_outer(out.raw, f, 1), row_major({b, raw[2], raw[3]})),
+          graph_->reshape(take_outer(out.mask_logits, f, 1), row_major({logits[1], b, logits[3], logits[4]}))));
+  };
+  if (object_net_bytes(config_, kFrames * config_.slots * b) <= options_.max_tensor_bytes) {
+    add_states(object_net(layers, config_, images4, kFrames), kFrames);
+  } else {
+    for (int64_t f = 0; f < kFrames; ++f)
+      add_states(object_net(layers, config_, take_outer(images4, f * b, b), 1), 1);
+  }
+  return states;
+}
+
+void Opple::build_all() {
+  const int64_t b = options_.batch;
+  const float fov = as_float(config_.fov);
+  const Value images4 = to_channels4(images_);
+  // Frames 1 and 3 pass the depth network for their part in its running averages alone.
+  const Value depths = depth_net(factory("depth"), config_, images4, kFrames);
+  const Value depth = take_outer(depths, b, b);
+  const auto o = see_objects(images4);
+  const ObjectMotion motion = object_motion(config_, o[0], o[1], camera_);
+
+  const Value points2 = back_project(depth, fov);
+  const Value points3 = move_pixels(points2, o[1].location, motion.velocity, motion.omega, camera_.m23);
+  const auto warp = splat(image2_, project(points3, fov), o[1].masks, as_float(config_.beta));
+  warped_ = warp[0];
+  warped_depth_ = warp[1];
+  share_ = warp_share(warp[2], config_.warp);
+  imagine(o[1], depth, motion);
+  predicted_ = blend(share_, warped_, imagined_);
+  const Value predicted_depth = blend(share_, warped_depth_, imagined_depth_);
+  add_losses(o, motion, points2);
+
+  for (size_t f = 0; f < o.size(); ++f) keep_objects(fmt::format("o{}", f + 1), o[f]);
+  const std::map<std::string, Value> stages{{"depth", depth},
+                                            {"points2", points2},
+                                            {"points3", points3},
+                                            {"q12", motion.q},
+                                            {"velocity", motion.velocity},
+                                            {"omega", motion.omega},
+                                            {"direction", motion.direction},
+                                            {"location3", motion.location3},
+                                            {"log_pose3", motion.log_pose3},
+                                            {"warped", warped_},
+                                            {"warped_depth", warped_depth_},
+                                            {"share", share_},
+                                            {"imagined", imagined_},
+                                            {"imagined_depth", imagined_depth_},
+                                            {"predicted", predicted_},
+                                            {"predicted_depth", predicted_depth}};
+  for (const auto& [name, value] : stages) keep(name, value);
+}
+
+void Opple::imagine(const ObjectState& o2, Value depth, const ObjectMotion& motion) {
+  const Value x = imagination_input(image2_, depth, o2.masks);
+  const Value condition = imagination_condition(camera_.ego23, motion.velocity, motion.direction);
+  const Value y = imagination_net(factory("imagination"), config_, x, condition);
+  const auto mixed = imagination_mix(y, config_.slots + 1, as_float(config_.max_depth));
+  imagined_ = mixed[0];
+  imagined_depth_ = mixed[1];
+}
+
+void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& motion, Value points2) {
+  const Scope scope(*graph_, "losses");
+  const Matching matching = match_objects(config_, o[1], o[2]);
+  const auto aligned = align(matching.log_w, motion.location3, motion.log_pose3);
+  const auto divergence = config_.pose_loss == PoseLossKind::kJs ? PoseDivergence::kJs : PoseDivergence::kKl;
+  losses_["image"] = image_loss(predicted_, image3_);
+  losses_["centre"] = centre_loss(o[1].masks, points2, o[1].location);
+  losses_["location"] = location_loss(aligned[0], o[2].location, matching.q);
+  losses_["pose"] = pose_loss(o[2].log_pose, aligned[1], matching.q, divergence);
+  losses_["collapse"] = collapse_loss(o[0].location, o[2].location, matching.q, permutation_);
+  const float reg = as_float(config_.reg);
+  losses_["total"] = weighted_sum(
+      {losses_["image"], losses_["centre"], losses_["location"], losses_["pose"], losses_["collapse"]},
+      {1.0F, reg, reg, reg, reg});
+  loss_ = losses_["total"];
+  for (const auto& [name, value] : losses_) graph_->keep("loss/" + name, value);
+}
+
+void Opple::keep(const std::string& name, Value value) {
+  if (options_.keep_stages) graph_->keep("out/" + name, value);
+}
+
+void Opple::keep_objects(const std::string& name, const ObjectState& state) {
+  keep(name + ".location", state.location);
+  keep(name + ".log_pose", state.log_pose);
+  keep(name + ".code", state.code);
+  keep(name + ".mask_logits", state.mask_logits);
+  keep(name + ".masks", state.masks);
+}
+
+std::vector<InitialTensor> Opple::tensors() const {
+  std::vector<InitialTensor> all;
+  for (const auto& [group, layers] : factories_)
+    all.insert(all.end(), layers.tensors().begin(), layers.tensors().end());
+  return all;
+}
+
+std::vector<std::string> Opple::groups() const {
+  std::vector<std::string> names;
+  for (const auto& [group, layers] : factories_) names.push_back(group);
+  return names;
+}
+
+void Opple::feed(Executor& executor, const Triplets& triplets) const {
+  const auto b = static_cast<size_t>(options_.batch);
+  if (triplets.poses.size() != 3 * b)
+    throw Error(fmt::format("{} camera poses were given for a batch of {}; three each are needed",
+                            triplets.poses.size(), b));
+  executor.write(images_, triplets.images);
+  std::vector<float> m12;
+  std::vector<float> m23;
+  std::vector<float> ego23;
+  std::vector<uint32_t> index12;
+  std::vector<uint32_t> index23;
+  for (size_t i = 0; i < b; ++i) {
+    const CameraPose& p1 = triplets.poses[i];
+    const CameraPose& p2 = triplets.poses[b + i];
+    const CameraPose& p3 = triplets.poses[2 * b + i];
+    for (double v : relative(p1, p2)) m12.push_back(as_float(v));
+    for (double v : relative(p2, p3)) m23.push_back(as_float(v));
+    for (double v : ego_motion(p2, p3)) ego23.push_back(as_float(v));
+    index12.push_back(resampling_index(-ego_motion(p1, p2)[2]));
+    index23.push_back(resampling_index(-ego_motion(p2, p3)[2]));
+  }
+  executor.write(camera_.m23, m23);
+  if (options_.background_only) return;
+  executor.write(camera_.m12, m12);
+  executor.write(camera_.ego23, ego23);
+  executor.write_words(camera_.index12, index12);
+  executor.write_words(camera_.index23, index23);
+  executor.write_words(permutation_, triplets.permutation);
+}
+
+void Opple::feed_constants(Executor& executor) const {
+  if (options_.background_only) {
+    const Value ones = graph_->find("ones");
+    executor.write(ones, std::vector<float>(static_cast<size_t>(ones.shape().elements()), 1.0F));
+    return;
+  }
+  executor.write(camera_.resampling, resampling_matrices(config_.bins));
+}
+
+void Opple::feed_random(Executor& executor, uint32_t seed, uint32_t step) const {
+  executor.write_words(random_, std::vector<uint32_t>{seed, step});
+}
+
+}  // namespace vkopple

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "graph/executor.h"
+#include "graph/graph.h"
+#include "models/camera.h"
+#include "models/layers.h"
+#include "models/model_config.h"
+#include "models/object_state.h"
+
+namespace vkopple {
+
+/// A batch of triplets for the model, on the host.
+struct Triplets {
+  std::vector<float> images;          ///< 3 × (B, 3, H, W) in [0, 1]
+  std::vector<CameraPose> poses;      ///< 3 × B
+  std::vector<uint32_t> permutation;  ///< (B), pairs scenes for the collapse term
+};
+
+struct OppleOptions {
+  int64_t batch = 1;
+  bool training = false;         ///< batch statistics, dropout; otherwise running averages
+  bool background_only = false;  ///< only the depth network, warping with the background hypothesis alone
+  bool keep_stages = false;      ///< keeps every named stage for the host (parity)
+  uint64_t max_tensor_bytes = ~uint64_t{0};  ///< the device's limit (Caps::max_tensor_bytes)
+};
+
+/// The whole model on triplets (docs/model.md §1–§6): networks, matching, motion, warp, imagination, losses.
+/// Builds its part of a graph and feeds its inputs.
+class Opple {
+ public:
+  Opple(Graph& graph, const ModelConfig& config, const OppleOptions& options);
+
+  const ModelConfig& config() const { return config_; }
+  const OppleOptions& options() const { return options_; }
+  Value loss() const { return loss_; }
+  /// Loss terms by name: image, centre, location, pose, collapse, total.
+  const std::map<std::string, Value>& losses() const { return losses_; }
+  /// Parameters and running averages with what they start from.
+  std::vector<InitialTensor> tensors() const;
+  /// "depth", "object", "imagination", as far as the graph has them.
+  std::vector<std::string> groups() const;
+
+  Value images() const { return images_; }
+  /// Writes images, camera motion and permutation. Throws Error on sizes that don't fit.
+  void feed(Executor& executor, const Triplets& triplets) const;
+  /// Writes what stays: the pose resampling matrices. Once, after the executor is made.
+  void feed_constants(Executor& executor) const;
+  /// Sets the counters that dropout draws from.
+  void feed_random(Executor& executor, uint32_t seed, uint32_t step) const;
+
+ private:
+  void declare_inputs();
+  void build_background_only();
+  void build_all();
+  std::vector<ObjectState> see_objects(Value images4);
+  void imagine(const ObjectState& o2, Value depth, const ObjectMotion& motion);
+  void add_losses(const std::vector<ObjectState>& o, const ObjectMotion& motion, Value points2);
+  void keep(const std::string& name, Value value);
+  void keep_objects(const std::string& name, const ObjectState& state);
+  LayerFactory& factory(const std::string& group);
+
+  Graph* graph_;
+  ModelConfig config_;
+  OppleOptions options_;
+  std::map<std::string, LayerFactory> factories_;
+  Value images_, image2_, image3_, permutation_, random_;
+  CameraMotion camera_;
+  Value warped_, warped_depth_, share_, imagined_, imagined_depth_, predicted_;
+  std::map<std::string, Value> losses_;
+  Value loss_;
+};
+
+}  // namespace vkopple

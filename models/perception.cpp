@@ -1,0 +1,53 @@
+#include "models/perception.h"
+
+#include "graph/ops/relayout.h"
+#include "models/depth_net.h"
+#include "models/network_options.h"
+#include "models/object_net.h"
+#include "runtime/device.h"
+
+namespace vkopple {
+
+Perception::Perception(const Device& device, const ModelConfig& config, std::shared_ptr<GroupStore> groups,
+                       const PerceptionOptions& options)
+    : config_(config), options_(options) {
+  const uint64_t largest = device.caps().max_tensor_bytes();
+  const auto use = [&](LayerFactory& layers) {
+    tensors_.insert(tensors_.end(), layers.tensors().begin(), layers.tensors().end());
+  };
+  images_ = graph_.input("images", row_major({options.batch, 3, config.height, config.width}));
+  const Value images4 = to_channels4(images_);
+  LayerFactory depth(graph_, network_options(config, "depth", false, {}, largest));
+  depth_ = depth_net(depth, config, images4, 1);
+  use(depth);
+  graph_.keep("depth", depth_);
+  if (options.objects) {
+    LayerFactory layers(graph_, network_options(config, "object", false, {}, largest));
+    const ObjectOutputs out = object_net(layers, config, images4, 1);
+    use(layers);
+    const Shape& raw = out.raw.shape();
+    const Shape& logits = out.mask_logits.shape();
+    objects_ =
+        object_state(config, graph_.reshape(out.raw, row_major({raw[1], raw[2], raw[3]})),
+                     graph_.reshape(out.mask_logits, row_major({logits[1], logits[2], logits[3], logits[4]})));
+    graph_.keep("masks", objects_.masks);
+    graph_.keep("location", objects_.location);
+    graph_.keep("log_pose", objects_.log_pose);
+  }
+  executor_ = std::make_unique<Executor>(device, graph_, ExecutorOptions{.groups = std::move(groups)});
+}
+
+Percepts Perception::see(std::span<const float> images) {
+  executor_->write(images_, images);
+  executor_->forward();
+  Percepts percepts;
+  percepts.depth = executor_->read(depth_);
+  if (options_.objects) {
+    percepts.masks = executor_->read(objects_.masks);
+    percepts.location = executor_->read(objects_.location);
+    percepts.log_pose = executor_->read(objects_.log_pose);
+  }
+  return percepts;
+}
+
+}  // namespace vkopple

@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "tools/command.h"
+#include "tools/device_option.h"
+#include "train/benchmark.h"
+#include "train/conv_benchmark.h"
+
+namespace vkopple {
+namespace {
+
+struct Options {
+  std::string what;
+  std::string preset = "full";
+  BenchmarkOptions benchmark;
+  bool json = false;
+  std::string device;
+};
+
+nlohmann::ordered_json header(const Device& device, const Options& options) {
+  return {{"what", options.what},
+          {"preset", options.preset},
+          {"batch", options.benchmark.batch},
+          {"device", device.caps().name},
+          {"driver", device.caps().driver}};
+}
+
+void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
+  out["seconds_per_step"] = r.seconds_per_step;
+  out["triplets_per_second"] = r.triplets_per_second;
+  out["gflop_per_triplet"] = r.gflop_per_triplet;
+  out["peak_device_bytes"] = r.peak_device_bytes;
+  out["first_step_seconds"] = r.first_step_seconds;
+  out["dispatches"] = r.dispatches;
+  out["by_op"] = r.by_op;
+}
+
+void print(const Device& device, const Options& options, const BenchmarkResult& r) {
+  fmt::print("{} of {}, batch {}, on {} ({})\n", options.what, options.preset, options.benchmark.batch,
+             device.caps().name, device.caps().driver);
+  fmt::print("  {:.4f} s a step, {:.2f} {} a second; {:.1f} GFLOP each, {:.1f} GFLOP/s\n", r.seconds_per_step,
+             r.triplets_per_second, options.what == "infer" ? "images" : "triplets", r.gflop_per_triplet,
+             r.gflop_per_triplet * r.triplets_per_second);
+  fmt::print("  {} MiB on the device, {} dispatches; the first step took {:.1f} s\n", r.peak_device_bytes >> 20,
+             r.dispatches, r.first_step_seconds);
+  std::vector<std::pair<double, std::string>> ops;
+  for (const auto& [op, seconds] : r.by_op) ops.emplace_back(seconds, op);
+  std::sort(ops.rbegin(), ops.rend());
+  for (const auto& [seconds, op] : ops)
+    if (seconds > 0.002 * r.seconds_per_step) fmt::print("  {:>9.2f} ms  {}\n", seconds * 1e3, op);
+}
+
+void print(const std::vector<ConvTiming>& timings) {
+  fmt::print("{:<44} {:>9} {:>9} {:>9}   GFLOP/s\n", "convolution N,Ci,H,W -> Co", "forward", "d input",
+             "d weight");
+  for (const ConvTiming& t : timings)
+    fmt::print("{:<44} {:>9.1f} {:>9.1f} {:>9.1f}\n", t.label, t.forward, t.data_gradient, t.weight_gradient);
+}
+
+void run(const Options& options) {
+  if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
+  const Device device({.selector = options.device});
+  nlohmann::ordered_json out = header(device, options);
+  if (options.what == "conv") {
+    const auto timings = benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats);
+    for (const ConvTiming& t : timings)
+      out["convolutions"].push_back({{"shape", t.label},
+                                     {"forward_gflops", t.forward},
+                                     {"data_gradient_gflops", t.data_gradient},
+                                     {"weight_gradient_gflops", t.weight_gradient}});
+    if (!options.json) print(timings);
+  } else {
+    const Config config = Config::load(options.preset);
+    const BenchmarkResult result = options.what == "step"
+                                       ? benchmark_step(device, config, options.benchmark)
+                                       : benchmark_inference(device, config, options.benchmark);
+    add(out, result);
+    if (!options.json) print(device, options, result);
+  }
+  if (options.json) fmt::print("{}\n", out.dump(2));
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("bench", "Time a training step, inference, or convolutions");
+  const auto options = std::make_shared<Options>();
+  command->add_option("what", options->what, "step, infer or conv")
+      ->required()
+      ->check(CLI::IsMember({"step", "infer", "conv"}));
+  command->add_option("--preset", options->preset, "Preset or configuration file")->capture_default_str();
+  command->add_option("--batch", options->benchmark.batch, "Triplets a step (images for infer)")
+      ->capture_default_str();
+  command->add_option("--stage", options->benchmark.stage,
+                      "Stage of training that step times (default: the last)");
+  command->add_option("--repeats", options->benchmark.repeats, "Timed runs, of which the median counts")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print JSON");
+  add_device_option(*command, options->device);
+  command->footer("Example: vkopple bench step --preset small --batch 4 --json");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace vkopple

@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "runtime/device.h"
+#include "tools/command.h"
+#include "tools/device_option.h"
+#include "train/parity.h"
+#include "train/safetensors.h"
+
+namespace vkopple {
+namespace {
+
+struct Options {
+  std::string fixture;
+  std::string dump;
+  bool json = false;
+  std::string device;
+};
+
+nlohmann::ordered_json to_json(const ParityEntry& e) {
+  return {{"name", e.name}, {"error", e.error}, {"noise", e.noise}, {"limit", e.limit}, {"passed", e.passed()}};
+}
+
+void print(const ParityReport& report) {
+  fmt::print("{:<14} {:>7} {:>10} {:>10} {:>10}   {}\n", "group", "tensors", "error", "noise", "limit",
+             "worst tensor");
+  for (const auto& [group, worst] : report.worst()) {
+    size_t count = 0;
+    for (const auto& e : report.entries) count += e.name.starts_with(group + "/") ? 1 : 0;
+    fmt::print("{:<14} {:>7} {:>10.1e} {:>10.1e} {:>10.1e}   {}\n", group, count, worst.error, worst.noise,
+               worst.limit, worst.name);
+  }
+  for (const auto& e : report.entries)
+    if (!e.passed())
+      fmt::print("OVER  {}: error {:.2e}, limit {:.2e} (noise {:.1e})\n", e.name, e.error, e.limit, e.noise);
+}
+
+void run(const Options& options) {
+  const Device device({.selector = options.device});
+  const ParityReport report = check_parity(device, options.fixture);
+  if (!options.dump.empty()) write_safetensors(options.dump, {{"fixture", options.fixture}}, report.computed);
+  if (options.json) {
+    nlohmann::ordered_json out{{"fixture", options.fixture}, {"passed", report.passed()}};
+    out["worst"] = nlohmann::ordered_json::object();
+    for (const auto& [group, worst] : report.worst()) out["worst"][group] = to_json(worst);
+    for (const auto& e : report.entries) out["tensors"].push_back(to_json(e));
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    print(report);
+    fmt::print("{}: {}\n", options.fixture, report.passed() ? "every tensor is within its limit" : "FAILED");
+  }
+  if (!report.passed()) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("verify", "Compare every stage, loss and gradient with a reference fixture");
+  const auto options = std::make_shared<Options>();
+  command->add_option("fixture", options->fixture, "Parity fixture (safetensors)")->required();
+  command->add_option("--dump", options->dump, "Write what was computed, under the fixture's names");
+  command->add_flag("--json", options->json, "Print JSON");
+  add_device_option(*command, options->device);
+  command->footer("Example: vkopple verify tests/fixtures/rigid.safetensors --dump computed.safetensors");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace vkopple

@@ -1,0 +1,129 @@
+#include "train/benchmark.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "models/perception.h"
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "train/random.h"
+#include "train/training_step.h"
+
+namespace vkopple {
+namespace {
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+TrainingStage find_stage(const Config& config, const std::string& name) {
+  const auto stages = config.stages();
+  if (name.empty()) return stages.back();
+  const auto found =
+      std::find_if(stages.begin(), stages.end(), [&](const TrainingStage& s) { return s.name == name; });
+  if (found == stages.end())
+    throw UsageError(fmt::format("--stage {}: the configuration has no such stage", name));
+  return *found;
+}
+
+std::vector<float> noise(int64_t count) {
+  Random random(1, 0);
+  std::vector<float> values(static_cast<size_t>(count));
+  for (float& v : values) v = static_cast<float>(random.uniform());
+  return values;
+}
+
+Triplets made_up(const ModelConfig& model, int64_t batch) {
+  Triplets t;
+  t.images = noise(3 * batch * 3 * model.height * model.width);
+  for (int frame = 0; frame < 3; ++frame)
+    for (int64_t b = 0; b < batch; ++b)
+      t.poses.push_back({0.05 * frame, 0.02 * frame, 0.7, 0.03 * frame, 0, 0});
+  for (int64_t b = 0; b < batch; ++b) t.permutation.push_back(static_cast<uint32_t>((b + 1) % batch));
+  return t;
+}
+
+void initialise(Executor& executor, const std::vector<InitialTensor>& tensors) {
+  for (const InitialTensor& t : tensors)
+    executor.write(t.value, initial_values(t.initial, t.value.shape().elements(), 1, t.name));
+}
+
+/// Runs `step` once for warmth and then `repeats` times, and completes the result.
+void time_steps(BenchmarkResult& result, const BenchmarkOptions& options, const std::function<void()>& step) {
+  step();
+  std::vector<double> seconds;
+  for (int i = 0; i < options.repeats; ++i) seconds.push_back(seconds_of(step));
+  result.seconds_per_step = median(seconds);
+  result.triplets_per_second = static_cast<double>(options.batch) / result.seconds_per_step;
+}
+
+void add_profile(BenchmarkResult& result, const Executor& executor) {
+  const Profile profile = executor.profile();
+  for (const auto& [op, s] : profile.forward) result.by_op[op + ".forward"] += s;
+  for (const auto& [op, s] : profile.backward) result.by_op[op + ".backward"] += s;
+  for (const auto& [op, s] : profile.update) result.by_op[op + ".update"] += s;
+}
+
+}  // namespace
+
+BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options) {
+  TrainingStage stage = find_stage(config, options.stage);
+  stage.batch = static_cast<int>(options.batch);
+  const Triplets triplets = made_up(config.model, options.batch);
+  BenchmarkResult result;
+  std::unique_ptr<TrainingStep> training;
+  uint32_t step = 0;
+  const auto run = [&] { training->run(triplets, 1, step++); };
+  const auto build = [&](bool profile) {
+    training = std::make_unique<TrainingStep>(device, config, stage, nullptr, profile);
+    initialise(training->executor(), training->model().tensors());
+  };
+  result.first_step_seconds = seconds_of([&] {
+    build(false);
+    run();
+  });
+  time_steps(result, options, run);
+  const Executor& executor = training->executor();
+  result.gflop_per_triplet =
+      (executor.forward_flop() + executor.backward_flop()) * 1e-9 / static_cast<double>(options.batch);
+  result.peak_device_bytes = executor.total_bytes();
+  result.dispatches = executor.dispatches();
+  build(true);  // timestamps cost a little: they get runs of their own
+  run();
+  run();
+  add_profile(result, training->executor());
+  return result;
+}
+
+BenchmarkResult benchmark_inference(const Device& device, const Config& config,
+                                    const BenchmarkOptions& options) {
+  const auto images = noise(options.batch * 3 * config.model.height * config.model.width);
+  BenchmarkResult result;
+  std::unique_ptr<Perception> perception;
+  const auto run = [&] { perception->see(images); };
+  result.first_step_seconds = seconds_of([&] {
+    perception = std::make_unique<Perception>(device, config.model, std::make_shared<GroupStore>(device),
+                                              PerceptionOptions{.batch = options.batch});
+    initialise(perception->executor(), perception->tensors());
+    run();
+  });
+  time_steps(result, options, run);
+  Executor& executor = perception->executor();
+  result.gflop_per_triplet = executor.forward_flop() * 1e-9 / static_cast<double>(options.batch);
+  result.peak_device_bytes = executor.total_bytes();
+  result.dispatches = executor.dispatches();
+  return result;
+}
+
+}  // namespace vkopple

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "models/config.h"
+
+namespace vkopple {
+
+class Device;
+
+struct BenchmarkOptions {
+  int64_t batch = 4;
+  int repeats = 5;    ///< timed runs, after one that builds pipelines and one that warms up
+  std::string stage;  ///< of training, by name; empty: the last one, which trains everything
+};
+
+/// Figures of one benchmark; seconds are wall-clock medians.
+struct BenchmarkResult {
+  double seconds_per_step = 0;
+  double triplets_per_second = 0;  ///< images a second for inference
+  double gflop_per_triplet =
+      0;  ///< of convolutions and products, forward and backward as far as run; an image for inference
+  uint64_t peak_device_bytes = 0;
+  double first_step_seconds = 0;  ///< building the graph and its pipelines, and the first run
+  size_t dispatches = 0;
+  std::map<std::string, double> by_op;  ///< seconds of device time by op and pass, as "conv2d.backward"
+};
+
+/// A training step on made-up images: forward, backward and update.
+BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options);
+/// Depth, masks and locations of single images.
+BenchmarkResult benchmark_inference(const Device& device, const Config& config,
+                                    const BenchmarkOptions& options);
+
+}  // namespace vkopple

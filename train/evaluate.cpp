@@ -1,0 +1,119 @@
+#include "train/evaluate.h"
+
+#include <algorithm>
+
+#include "runtime/error.h"
+#include "train/pictures.h"
+
+namespace vkopple {
+namespace {
+
+template <class T>
+std::span<const T> part(const std::vector<T>& values, size_t index, size_t count) {
+  if (values.empty()) return {};
+  return std::span(values).subspan(index * (values.size() / count), values.size() / count);
+}
+
+std::vector<LabelledLocation> true_locations(const TripletBatch& batch, size_t index) {
+  std::vector<LabelledLocation> all;
+  if (batch.objects.empty()) return all;
+  const auto& objects = batch.objects[index];
+  for (size_t i = 0; i < objects.size(); ++i)
+    if (objects[i].pixels > 0)
+      all.push_back({static_cast<int32_t>(i + 1), objects[i].location[0], objects[i].location[1]});
+  return all;
+}
+
+std::vector<LabelledLocation> inferred_locations(std::span<const float> location) {
+  std::vector<LabelledLocation> all;
+  for (size_t k = 0; k * 3 < location.size(); ++k)
+    all.push_back({static_cast<int32_t>(k), static_cast<double>(location[3 * k]),
+                   static_cast<double>(location[3 * k + 1])});
+  return all;
+}
+
+Plane<float> plane(std::span<const float> values, int height, int width) {
+  Plane<float> out(height, width);
+  std::copy(values.begin(), values.end(), out.pixels.begin());
+  return out;
+}
+
+class Evaluation {
+ public:
+  Evaluation(Perception& model, std::vector<std::vector<RgbImage>>* grid, size_t grid_rows)
+      : model_(model), grid_(grid), grid_rows_(grid_rows) {}
+
+  void add(const TripletBatch& batch, size_t index) {
+    const auto count = static_cast<size_t>(batch.batch);
+    const auto entities = model_.config().slots + 1;
+    const auto truth = part(batch.label, index, count);
+    const std::vector<int32_t> labels(truth.begin(), truth.end());
+    const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
+    const auto true_objects = true_locations(batch, index);
+    const auto objects = inferred_locations(part(percepts_.location, index, count));
+    scores_.add({.true_labels = labels,
+                 .predicted_labels = inferred,
+                 .true_depth = part(batch.depth, index, count),
+                 .predicted_depth = part(percepts_.depth, index, count),
+                 .true_objects = true_objects,
+                 .predicted_objects = objects});
+    if (grid_ != nullptr && grid_->size() < grid_rows_) add_row(batch, index, inferred, labels);
+  }
+
+  void see(const TripletBatch& batch) { percepts_ = model_.see(batch.images[1]); }
+  EvaluationScores& scores() { return scores_; }
+
+ private:
+  void add_row(const TripletBatch& batch, size_t index, const std::vector<int32_t>& inferred,
+               std::vector<int32_t> labels) {
+    const auto count = static_cast<size_t>(batch.batch);
+    RgbImage image(batch.height, batch.width);
+    const auto pixels = part(batch.images[1], index, count);
+    std::copy(pixels.begin(), pixels.end(), image.pixels.begin());
+    for (int32_t& label : labels) --label;  // objects count from 0 in colours, as slots do
+    const auto farthest = static_cast<float>(model_.config().max_depth);
+    const auto background = static_cast<int32_t>(model_.config().slots);
+    grid_->push_back(
+        {image, overlay(image, inferred, background), overlay(image, labels, -1),
+         depth_picture(plane(part(percepts_.depth, index, count), batch.height, batch.width), farthest),
+         depth_picture(plane(part(batch.depth, index, count), batch.height, batch.width), farthest)});
+  }
+
+  Perception& model_;
+  std::vector<std::vector<RgbImage>>* grid_;
+  size_t grid_rows_;
+  Percepts percepts_;
+  EvaluationScores scores_;
+};
+
+}  // namespace
+
+std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities) {
+  const auto count = static_cast<size_t>(entities);
+  const size_t pixels = masks.size() / count;
+  std::vector<int32_t> best(pixels, 0);
+  for (size_t p = 0; p < pixels; ++p)
+    for (size_t e = 1; e < count; ++e)
+      if (masks[e * pixels + p] > masks[static_cast<size_t>(best[p]) * pixels + p])
+        best[p] = static_cast<int32_t>(e);
+  return best;
+}
+
+EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
+                          std::vector<std::vector<RgbImage>>* grid, size_t grid_rows) {
+  Evaluation evaluation(model, grid, grid_rows);
+  for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
+    const TripletBatch batch = source.read(step);
+    if (batch.label.empty() || batch.depth.empty())
+      throw Error(
+          "the data has no true labels and depth to compare with; use rooms:SEED or shards of vkopple "
+          "generate");
+    if (batch.batch != model.batch()) throw Error("the data's batches don't fit the model's");
+    evaluation.see(batch);
+    for (size_t i = 0; i < static_cast<size_t>(batch.batch) && evaluation.scores().images() < images; ++i)
+      evaluation.add(batch, i);
+  }
+  return evaluation.scores();
+}
+
+}  // namespace vkopple

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "models/perception.h"
+#include "train/data/triplets.h"
+#include "train/evaluation_scores.h"
+#include "train/image.h"
+
+namespace vkopple {
+
+/// Index of the largest of the K+1 masks at each pixel (K is the background). masks: (K+1, H, W) of one image.
+std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities);
+
+/// Scores (docs/model.md §10) on the middle frames of a source's triplets, `images` of them from step 0 on.
+/// Where `grid` is given it receives, for the first `grid_rows` images, picture, inferred objects, true
+/// objects, inferred depth, true depth. Throws Error where the source has no truth.
+EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
+                          std::vector<std::vector<RgbImage>>* grid = nullptr, size_t grid_rows = 6);
+
+}  // namespace vkopple

@@ -35,11 +35,11 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
     const std::string group(kNetworkNames[static_cast<size_t>(network)]);
     if (std::find(present.begin(), present.end(), group) == present.end()) continue;
     AdamOptions options{};
-    options.learning_rate = static_cast<float>(stage.learning_rate);
-    options.beta1 = static_cast<float>(config.training.betas[0]);
-    options.beta2 = static_cast<float>(config.training.betas[1]);
-    options.epsilon = static_cast<float>(config.training.epsilon);
-    options.clip = static_cast<float>(clip_of(config.training, network));
+    options.learning_rate = stage.learning_rate;
+    options.beta1 = config.training.betas[0];
+    options.beta2 = config.training.betas[1];
+    options.epsilon = config.training.epsilon;
+    options.clip = clip_of(config.training, network);
     adam(graph_, group, options);
     trained.push_back(group);
   }

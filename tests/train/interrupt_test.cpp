@@ -22,6 +22,7 @@ TEST(InterruptDeathTest, TheSecondEndsTheProgram) {
     std::raise(SIGINT);
     std::raise(SIGINT);
   };
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // others have threads by now
   EXPECT_EXIT(twice(), testing::KilledBySignal(SIGINT), "");
 }
 

@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/program.h"
+#include "tests/support/temp_folder.h"
+#include "train/atomic_file.h"
+
+namespace vkopple {
+namespace {
+
+using test::expect_failure;
+using test::expect_success;
+using test::run_vkopple;
+using test::TempFolder;
+
+class TrainCommand : public testing::Test {
+ protected:
+  TrainCommand() {
+    write_file(folder_ / "config.json", R"({
+        "model": {"height": 16, "width": 16, "depth_width": 2, "object_width": 4, "imagine_width": 1, "lstm": 4},
+        "training": {"stages": [{"networks": ["depth"], "hypotheses": "background"}]},
+        "rooms": {"supersample": 1}})");
+  }
+
+  test::Outcome train(std::vector<std::string> more) const {
+    more.insert(more.begin(), "train");
+    return run_vkopple(more);
+  }
+  std::string config() const { return folder_ / "config.json"; }
+  std::string out() const { return folder_ / "run"; }
+
+  TempFolder folder_;
+};
+
+TEST_F(TrainCommand, TrainsAndGoesOn) {
+  const auto first = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "1", "--batch", "2"});
+  expect_success(first);
+  EXPECT_NE(first.errors.find("stage all: steps 1 to 1, batch 2"), std::string::npos) << first.errors;
+  EXPECT_NE(first.errors.find("done after step 1, saved in " + out()), std::string::npos) << first.errors;
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out()}), 2, {out(), "--resume"});
+  expect_failure(train({config(), "--out", out(), "--resume"}), 1, {"training.batch is 2 there and 20 here"});
+  expect_failure(train({"--out", out(), "--resume", "--seed", "7"}), 2, {"--seed", "seed 0"});
+  const auto second =
+      train({"--out", out(), "--resume", "--steps", "2", "--checkpoint-every", "2", "--eval-every", "0"});
+  expect_success(second);
+  EXPECT_NE(second.errors.find("2/2 all  total"), std::string::npos) << second.errors;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "step-000002.safetensors"));
+  const auto third = train({"--out", out(), "--resume", "--steps", "2"});
+  expect_success(third);
+  EXPECT_NE(third.errors.find("has its 2 steps already"), std::string::npos) << third.errors;
+}
+
+TEST_F(TrainCommand, RefusesWhatCannotBe) {
+  expect_failure(train({"--data", "rooms:1", "--out", out()}), 2, {"preset"});
+  expect_failure(train({config(), "--out", out()}), 2, {"--data"});
+  expect_failure(train({"smal", "--data", "rooms:1", "--out", out()}), 2, {"smal"});
+  expect_failure(train({config(), "--data", "rooms:1"}), 2, {"--out"});
+  expect_failure(train({config(), "--data", "rooms:x", "--out", out()}), 2, {"rooms:x"});
+  expect_failure(train({config(), "--data", folder_ / "absent", "--out", out()}), 1, {"absent"});
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--steps", "0"}), 2, {"--steps"});
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--batch", "0"}), 2, {"--batch"});
+  expect_failure(train({"--out", out(), "--resume"}), 2, {out(), "latest.safetensors"});
+  EXPECT_FALSE(std::filesystem::exists(out()));
+}
+
+TEST_F(TrainCommand, NamesWhatItCannotRead) {
+  std::filesystem::create_directory(out());
+  write_file(folder_ / "run" / "latest.safetensors", "nonsense");
+  expect_failure(train({"--out", out(), "--resume"}), 1, {"latest.safetensors"});
+  expect_failure(train({config(), "--data", "rooms:1", "--out", config() + "/run", "--steps", "1"}), 1,
+                 {"run"});
+}
+
+}  // namespace
+}  // namespace vkopple

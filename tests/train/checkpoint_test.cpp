@@ -1,0 +1,194 @@
+#include "train/checkpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <map>
+
+#include "tests/support/expect_error.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/test_device.h"
+#include "train/atomic_file.h"
+#include "train/safetensors.h"
+
+namespace vkopple {
+namespace {
+
+using test::expect_error;
+using test::TempFolder;
+
+constexpr size_t kLargestFile = size_t{64} << 20;
+constexpr const char* kCounter = "depth_model.depth_net.down1.conv.2.num_batches_tracked";
+constexpr const char* kWeight = "depth_model.depth_net.inc.conv.0.weight";
+
+Config small_config() {
+  return Config::parse(R"({"model": {"height": 16, "width": 16, "depth_width": 2, "object_width": 4,
+                                     "imagine_width": 1, "lstm": 4, "code": 12}})",
+                       "test");
+}
+
+const TrainingPosition kPosition{
+    .step = 12, .stage = 0, .stage_step = 12, .seed = UINT64_MAX, .data = "rooms:3"};
+
+/// A file with everything of its own number, and the store that it was written from.
+class CheckpointFile : public testing::Test {
+ protected:
+  CheckpointFile() : store_(test_device(), small_config().model) {
+    store_.initialise(5);
+    float next = 0;
+    for (const LayoutEntry& entry : store_.layout().optimiser())
+      store_.write(entry, std::vector<float>(static_cast<size_t>(entry.shape.elements()), next += 0.25F));
+    int64_t calls = 0;
+    for (auto& [name, count] : store_.batch_counters()) count = ++calls;
+    save_checkpoint(path(), store_, small_config(), kPosition);
+  }
+
+  std::filesystem::path path() const { return folder_ / "a.safetensors"; }
+
+  /// Writes the file again, changed.
+  void change(const std::function<void(std::map<std::string, std::string>&,
+                                       std::map<std::string, StoredTensor>&)>& edit) {
+    std::map<std::string, StoredTensor> tensors;
+    std::map<std::string, std::string> metadata;
+    {
+      const SafetensorsFile file(path());
+      metadata = file.metadata();
+      for (const auto& name : file.names()) tensors.emplace(name, file.read(name));
+    }
+    edit(metadata, tensors);
+    write_safetensors(path(), metadata, tensors);
+  }
+  void change_tensors(const std::function<void(std::map<std::string, StoredTensor>&)>& edit) {
+    change([&](auto&, auto& tensors) { edit(tensors); });
+  }
+
+  void load() {
+    ModelStore other(test_device(), small_config().model);
+    load_checkpoint(path(), other, small_config());
+  }
+
+  TempFolder folder_;
+  ModelStore store_;
+};
+
+TEST_F(CheckpointFile, GivesBackEveryBit) {
+  ModelStore other(test_device(), small_config().model);
+  EXPECT_EQ(load_checkpoint(path(), other, small_config()), kPosition);
+  EXPECT_EQ(other.batch_counters(), store_.batch_counters());
+  save_checkpoint(folder_ / "b.safetensors", other, small_config(), kPosition);
+  EXPECT_EQ(read_file(path(), kLargestFile), read_file(folder_ / "b.safetensors", kLargestFile));
+}
+
+TEST_F(CheckpointFile, HoldsWhatItsDescriptionSays) {
+  const SafetensorsFile file(path());
+  EXPECT_EQ(file.shape(kWeight), (StoredShape{2, 3, 3, 3}));
+  EXPECT_EQ(file.shape("adam/depth/m/" + std::string(kWeight)), (StoredShape{2, 3, 3, 3}));
+  EXPECT_EQ(file.shape("adam/object/v/segmentation_model.seg_net.seg_net.outc_att.conv.bias"), StoredShape{1});
+  EXPECT_TRUE(file.contains("adam/imagination/correction"));
+  EXPECT_EQ(file.dtype(kCounter), StoredType::kI64);
+  EXPECT_EQ(file.metadata().at("step"), "12");
+  EXPECT_EQ(Config::parse(file.metadata().at("config"), "file"), small_config());
+}
+
+TEST_F(CheckpointFile, AModelNeedsNoOptimiser) {
+  change_tensors([](auto& tensors) {
+    std::erase_if(tensors, [](const auto& item) { return item.first.starts_with("adam/"); });
+  });
+  const LoadedModel model = load_model(test_device(), path());
+  EXPECT_EQ(model.config, small_config());
+  EXPECT_EQ(model.position, kPosition);
+  for (const LayoutEntry& entry : store_.layout().weights())
+    EXPECT_EQ(model.store->read(entry), store_.read(entry));
+  expect_error([&] { load(); }, {"a.safetensors", "lacks", "adam/"});
+}
+
+TEST_F(CheckpointFile, AnotherConfigurationIsNamed) {
+  Config other = small_config();
+  other.training.batch = 7;
+  ModelStore store(test_device(), other.model);
+  expect_error([&] { load_checkpoint(path(), store, other); },
+               {"a.safetensors", "training.batch is 20 there and 7 here"});
+}
+
+TEST_F(CheckpointFile, RefusesOtherTensors) {
+  change_tensors([](auto& tensors) { tensors.emplace("extra", StoredTensor::of({1}, std::vector<float>{1})); });
+  expect_error([&] { load(); }, {"a.safetensors", "extra"});
+  expect_error([&] { load_model(test_device(), path()); }, {"a.safetensors", "extra"});
+}
+
+TEST_F(CheckpointFile, RefusesAbsentTensors) {
+  change_tensors([](auto& tensors) { tensors.erase(kWeight); });
+  expect_error([&] { load(); }, {"a.safetensors", kWeight});
+  expect_error([&] { load_model(test_device(), path()); }, {"a.safetensors", kWeight});
+}
+
+TEST_F(CheckpointFile, RefusesOtherShapes) {
+  change_tensors([](auto& tensors) { tensors.at(kWeight).shape = {2, 27}; });
+  expect_error([&] { load(); }, {"a.safetensors", kWeight, "[2, 27]", "[2, 3, 3, 3]"});
+}
+
+TEST_F(CheckpointFile, RefusesNumbersThatAreNone) {
+  change_tensors([](auto& tensors) {
+    std::vector<float> values(54, 0.5F);
+    values[3] = std::numeric_limits<float>::quiet_NaN();
+    tensors.at(kWeight) = StoredTensor::of({2, 3, 3, 3}, values);
+  });
+  expect_error([&] { load(); }, {"a.safetensors", kWeight});
+  expect_error([&] { load_model(test_device(), path()); }, {"a.safetensors", kWeight});
+}
+
+TEST_F(CheckpointFile, RefusesNegativeVariancesAndCounts) {
+  const std::string variance = "depth_model.depth_net.down1.conv.2.running_var";
+  change_tensors([&](auto& tensors) {
+    tensors.at(variance) = StoredTensor::of(tensors.at(variance).shape, std::vector<float>(2, -1.0F));
+  });
+  expect_error([&] { load(); }, {"a.safetensors", variance, "negative"});
+  save_checkpoint(path(), store_, small_config(), kPosition);
+  change_tensors([&](auto& tensors) { tensors.at(kCounter) = StoredTensor::of({}, std::vector<int64_t>{-1}); });
+  expect_error([&] { load(); }, {"a.safetensors", kCounter, "negative"});
+}
+
+TEST_F(CheckpointFile, RefusesOtherMetadata) {
+  const std::vector<std::pair<std::string, std::string>> wrong{
+      {"format", "other"}, {"format_version", "2"}, {"step", "-1"},  {"step", "1x"},
+      {"seed", ""},        {"stage", "1"},          {"config", "{"}, {"config", "{\"model\": {\"slots\": 0}}"}};
+  for (const auto& [key, value] : wrong) {
+    save_checkpoint(path(), store_, small_config(), kPosition);
+    change([&, k = key, v = value](auto& metadata, auto&) { metadata[k] = v; });
+    expect_error([&] { load(); }, {"a.safetensors"});
+    change([&, k = key](auto& metadata, auto&) { metadata.erase(k); });
+    expect_error([&] { load(); }, {"a.safetensors", key});
+  }
+}
+
+TEST_F(CheckpointFile, RefusesWhatIsCutShort) {
+  auto bytes = read_file(path(), kLargestFile);
+  bytes.resize(bytes.size() / 2);
+  write_file(path(), bytes);
+  expect_error([&] { load(); }, {"a.safetensors"});
+  expect_error([&] { load_model(test_device(), folder_ / "absent"); }, {"absent"});
+}
+
+TEST_F(CheckpointFile, WeightsThatAreNoNumbersAreNotWritten) {
+  const auto before = read_file(path(), kLargestFile);
+  const LayoutEntry& entry = store_.layout().weights().front();
+  store_.write(entry, std::vector<float>(static_cast<size_t>(entry.shape.elements()),
+                                         std::numeric_limits<float>::infinity()));
+  expect_error([&] { save_checkpoint(path(), store_, small_config(), kPosition); },
+               {"a.safetensors", entry.name});
+  EXPECT_EQ(read_file(path(), kLargestFile), before);
+}
+
+TEST_F(CheckpointFile, AFullDiskLeavesTheOneBefore) {
+  const auto before = read_file(path(), kLargestFile);
+  {
+    const test::FileSizeLimit limit(before.size() / 2);
+    expect_error([&] { save_checkpoint(path(), store_, small_config(), kPosition); }, {"a.safetensors"});
+  }
+  EXPECT_EQ(read_file(path(), kLargestFile), before);
+  EXPECT_EQ(folder_.entries(), 1U);
+}
+
+}  // namespace
+}  // namespace vkopple

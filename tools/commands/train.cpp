@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "models/config.h"
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "tools/command.h"
+#include "tools/device_option.h"
+#include "train/checkpoint.h"
+#include "train/interrupt.h"
+#include "train/progress.h"
+#include "train/run_folder.h"
+#include "train/trainer.h"
+
+namespace vkopple {
+namespace {
+
+struct Options {
+  std::string config;
+  std::string data;
+  std::string out;
+  std::string device;
+  std::optional<uint64_t> steps;
+  std::optional<uint64_t> seed;
+  std::optional<int> batch;
+  uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
+  uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
+  bool resume = false;
+};
+
+void set_batch(Config& config, int batch) {
+  config.training.batch = batch;
+  for (TrainingStage& stage : config.training.stages) stage.batch = batch;
+}
+
+/// What the command line and, where a run is resumed, its checkpoint ask for.
+struct Request {
+  Config config;
+  TrainerOptions trainer;
+};
+
+Request new_run(const Options& o, TrainerOptions trainer) {
+  if (trainer.folder.holds_checkpoint())
+    throw UsageError(
+        fmt::format("{}: holds a run already; go on with it by --resume, or name another --out", o.out));
+  if (o.config.empty()) throw UsageError("train: name a configuration file or a preset");
+  if (o.data.empty()) throw UsageError("train: say what to train on: --data rooms:SEED, or a folder of shards");
+  trainer.data = o.data;
+  trainer.seed = o.seed.value_or(0);
+  Request request{Config::load(o.config), std::move(trainer)};
+  if (o.batch) set_batch(request.config, *o.batch);
+  return request;
+}
+
+Request resumed_run(const Options& o, TrainerOptions trainer) {
+  if (!std::filesystem::exists(trainer.folder.latest()))
+    throw UsageError(fmt::format("{}: no run to resume, there is no {}", o.out,
+                                 trainer.folder.latest().filename().string()));
+  const CheckpointHeader header = read_checkpoint_header(trainer.folder.latest());
+  if (o.seed && *o.seed != header.position.seed)
+    throw UsageError(
+        fmt::format("--seed: the run has seed {}; leave it out or give the same", header.position.seed));
+  trainer.seed = header.position.seed;
+  trainer.data = o.data.empty() ? header.position.data : o.data;
+  if (trainer.data != header.position.data)
+    spdlog::warn("the run was trained on {} and goes on with {}", header.position.data, trainer.data);
+  Request request{o.config.empty() ? header.config : Config::load(o.config), std::move(trainer)};
+  if (o.batch) set_batch(request.config, *o.batch);
+  return request;
+}
+
+void run(const Options& o) {
+  TrainerOptions trainer_options{.folder = RunFolder(o.out)};
+  trainer_options.steps = o.steps;
+  trainer_options.checkpoint_every = o.checkpoint_every;
+  trainer_options.eval_every = o.eval_every;
+  Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
+  const Device device({.selector = o.device});
+  const Interrupt interrupt;
+  Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
+  Progress progress(trainer.plan().steps());
+  const uint64_t begin = trainer.position().step;
+  const bool complete = trainer.run(progress, [&] { return interrupt.requested(); });
+  const uint64_t step = trainer.position().step;
+  const std::string latest = RunFolder(o.out).latest().string();
+  if (!complete)
+    progress.say(
+        fmt::format("stopped after {} of {} steps, saved in {}; go on with the same command and --resume", step,
+                    trainer.plan().steps(), latest));
+  else if (step == begin)
+    progress.say(fmt::format("{} has its {} steps already; give more with --steps", o.out, step));
+  else
+    progress.say(fmt::format("done after step {}, saved in {}", step, latest));
+}
+
+}  // namespace
+
+void add_train(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("train", "Train a model");
+  const auto o = std::make_shared<Options>();
+  command->add_option("config", o->config, "A configuration file or a preset: full, small, tiny");
+  command->add_option("--data", o->data,
+                      "rooms:SEED draws new rooms at every step; or a shard, or a folder of shards");
+  command->add_option("--out", o->out, "Folder of the run: checkpoints and log.jsonl")->required();
+  command->add_option("--steps", o->steps,
+                      "Steps of the whole run over all stages; the last stage ends there (default: what the "
+                      "configuration says, and 15,125,000 triplets for a stage without end)");
+  command->add_option("--batch", o->batch, "Triplets of a step, in every stage")->check(CLI::Range(1, 4096));
+  command->add_option("--seed", o->seed, "Of weights, order and dropout (default: 0)");
+  command
+      ->add_option("--checkpoint-every", o->checkpoint_every,
+                   "Steps between checkpoints step-NNNNNN.safetensors, all of which are kept; 0: none. "
+                   "latest.safetensors is written then, every ten minutes, and at the end")
+      ->capture_default_str();
+  command
+      ->add_option("--eval-every", o->eval_every,
+                   "Steps between measurements of depth in unseen rooms, for the log; 0: none")
+      ->capture_default_str();
+  command->add_flag("--resume", o->resume,
+                    "Go on with the run in --out, to the same bytes as if it had never stopped");
+  add_device_option(*command, o->device);
+  command->footer(
+      "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
+      "          vkopple train --out run --steps 10000 --resume");
+  command->callback([o] { run(*o); });
+}
+
+}  // namespace vkopple

@@ -1,0 +1,169 @@
+#include "train/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <set>
+#include <string>
+
+#include "runtime/error.h"
+#include "train/config_difference.h"
+#include "train/quote.h"
+#include "train/safetensors.h"
+
+namespace vkopple {
+namespace {
+
+constexpr const char* kFormat = "vkopple checkpoint";
+constexpr const char* kVersion = "1";
+
+std::string shown(const std::filesystem::path& path) { return one_line(path.string()); }
+
+std::string metadata_text(const SafetensorsFile& file, const std::string& key) {
+  const auto found = file.metadata().find(key);
+  if (found == file.metadata().end())
+    throw Error(fmt::format("{}: is no checkpoint of vkopple: its metadata lack {}", shown(file.path()), key));
+  return found->second;
+}
+
+uint64_t metadata_number(const SafetensorsFile& file, const std::string& key) {
+  const std::string text = metadata_text(file, key);
+  uint64_t number = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (failure != std::errc{} || end != text.data() + text.size())
+    throw Error(fmt::format("{}: {} in its metadata must be a whole number, not {}", shown(file.path()), key,
+                            quote(text)));
+  return number;
+}
+
+CheckpointHeader header_of(const SafetensorsFile& file) {
+  const std::string format = metadata_text(file, "format");
+  const std::string version = metadata_text(file, "format_version");
+  if (format != kFormat || version != kVersion)
+    throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(file.path()),
+                            quote(format), quote(version), kFormat, kVersion));
+  CheckpointHeader header;
+  header.config = Config::parse(metadata_text(file, "config"), file.path().string() + ": config");
+  header.position = {.step = metadata_number(file, "step"),
+                     .stage = metadata_number(file, "stage"),
+                     .stage_step = metadata_number(file, "stage_step"),
+                     .seed = metadata_number(file, "seed"),
+                     .data = metadata_text(file, "data")};
+  if (header.position.stage >= header.config.stages().size())
+    throw Error(fmt::format("{}: is in stage {} of a configuration of {}", shown(file.path()),
+                            header.position.stage, header.config.stages().size()));
+  return header;
+}
+
+/// Every tensor that is wanted is there, nothing else is but what is `allowed`, and all have their shapes.
+void check_tensors(const SafetensorsFile& file, const std::map<std::string, StoredShape>& wanted,
+                   const std::set<std::string>& allowed) {
+  for (const auto& [name, shape] : wanted) {
+    if (!file.contains(name))
+      throw Error(fmt::format("{}: lacks the tensor {}; it is no complete checkpoint of its configuration",
+                              shown(file.path()), name));
+    if (file.shape(name) != shape)
+      throw Error(fmt::format("{}: {} has the shape {}, its configuration asks for {}", shown(file.path()),
+                              name, to_string(file.shape(name)), to_string(shape)));
+  }
+  for (const std::string& name : file.names())
+    if (!wanted.contains(name) && !allowed.contains(name))
+      throw Error(fmt::format("{}: holds a tensor {} that its configuration does not have", shown(file.path()),
+                              quote(name)));
+}
+
+void add_shapes(std::map<std::string, StoredShape>& shapes, const std::vector<LayoutEntry>& entries) {
+  for (const LayoutEntry& entry : entries) shapes[entry.name] = entry.stored_shape();
+}
+
+/// Variances and means of squares: the square root of a negative one would not be finite.
+bool is_mean_square(const std::string& name) {
+  return name.ends_with(".running_var") || (name.starts_with("adam/") && name.find("/v/") != std::string::npos);
+}
+
+void read_entries(const SafetensorsFile& file, ModelStore& store, const std::vector<LayoutEntry>& entries) {
+  for (const LayoutEntry& entry : entries) {
+    const std::vector<float> values = file.read_floats(entry.name, entry.stored_shape());
+    if (is_mean_square(entry.name) && *std::min_element(values.begin(), values.end()) < 0)
+      throw Error(fmt::format("{}: {} holds a negative number", shown(file.path()), entry.name));
+    store.write(entry, values);
+  }
+}
+
+void read_counters(const SafetensorsFile& file, ModelStore& store) {
+  for (auto& [name, count] : store.batch_counters()) {
+    count = file.read_ints(name).at(0);
+    if (count < 0) throw Error(fmt::format("{}: {} is negative", shown(file.path()), name));
+  }
+}
+
+std::map<std::string, StoredShape> weight_shapes(const ModelLayout& layout) {
+  std::map<std::string, StoredShape> shapes;
+  add_shapes(shapes, layout.weights());
+  for (const std::string& name : layout.batch_counters()) shapes[name] = {};
+  return shapes;
+}
+
+}  // namespace
+
+void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
+                     const TrainingPosition& position) {
+  std::map<std::string, StoredTensor> tensors;
+  for (const auto* entries : {&store.layout().weights(), &store.layout().optimiser()}) {
+    for (const LayoutEntry& entry : *entries) {
+      const std::vector<float> values = store.read(entry);
+      require_finite(entry.name, values, path);
+      tensors.emplace(entry.name, StoredTensor::of(entry.stored_shape(), std::span(values)));
+    }
+  }
+  for (const auto& [name, count] : store.batch_counters())
+    tensors.emplace(name, StoredTensor::of({}, std::span(&count, 1)));
+  write_safetensors(path,
+                    {{"format", kFormat},
+                     {"format_version", kVersion},
+                     {"config", config.to_json()},
+                     {"step", std::to_string(position.step)},
+                     {"stage", std::to_string(position.stage)},
+                     {"stage_step", std::to_string(position.stage_step)},
+                     {"seed", std::to_string(position.seed)},
+                     {"data", position.data}},
+                    tensors);
+}
+
+CheckpointHeader read_checkpoint_header(const std::filesystem::path& path) {
+  return header_of(SafetensorsFile(path));
+}
+
+TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& store, const Config& config) {
+  const SafetensorsFile file(path);
+  const CheckpointHeader header = header_of(file);
+  if (const auto difference = first_difference(header.config, config))
+    throw Error(fmt::format("{}: was trained with another configuration: {} is {} there and {} here",
+                            shown(path), difference->key, difference->first, difference->second));
+  auto shapes = weight_shapes(store.layout());
+  add_shapes(shapes, store.layout().optimiser());
+  check_tensors(file, shapes, {});
+  read_entries(file, store, store.layout().weights());
+  read_entries(file, store, store.layout().optimiser());
+  read_counters(file, store);
+  return header.position;
+}
+
+RoomsConfig LoadedModel::rooms() const { return config.stages().at(position.stage).rooms; }
+
+LoadedModel load_model(const Device& device, const std::filesystem::path& path) {
+  const SafetensorsFile file(path);
+  const CheckpointHeader header = header_of(file);
+  ModelLayout layout(header.config.model);
+  std::set<std::string> allowed;
+  for (const LayoutEntry& entry : layout.optimiser()) allowed.insert(entry.name);
+  check_tensors(file, weight_shapes(layout), allowed);
+  LoadedModel model{header.config, header.position, std::make_unique<ModelStore>(device, std::move(layout))};
+  read_entries(file, *model.store, model.store->layout().weights());
+  read_counters(file, *model.store);
+  return model;
+}
+
+}  // namespace vkopple

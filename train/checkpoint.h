@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "models/config.h"
+#include "train/model_store.h"
+#include "train/training_position.h"
+
+namespace vkopple {
+
+// Checkpoints: safetensors files (docs/checkpoints.md). Every function throws Error naming the file, and the
+// tensor or key.
+
+/// Writes everything that going on needs; the file appears when it is complete. Refuses weights that are not
+/// finite.
+void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
+                     const TrainingPosition& position);
+
+/// What a checkpoint says of itself.
+struct CheckpointHeader {
+  Config config;
+  TrainingPosition position;
+};
+CheckpointHeader read_checkpoint_header(const std::filesystem::path& path);
+
+/// Fills a store with all of a checkpoint, to go on training. The checkpoint must be of this configuration.
+TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& store, const Config& config);
+
+/// A trained model.
+struct LoadedModel {
+  Config config;
+  TrainingPosition position;
+  std::unique_ptr<ModelStore> store;
+
+  /// The rooms that it was last trained on.
+  RoomsConfig rooms() const;
+};
+
+/// The weights alone, for evaluation and inference; the file need not hold the optimiser's state.
+LoadedModel load_model(const Device& device, const std::filesystem::path& path);
+
+}  // namespace vkopple

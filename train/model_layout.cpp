@@ -1,0 +1,61 @@
+#include "train/model_layout.h"
+
+#include <string_view>
+
+#include "graph/graph.h"
+#include "graph/ops/adam.h"
+#include "models/opple.h"
+
+namespace vkopple {
+namespace {
+
+constexpr std::string_view kMean = "running_mean";
+constexpr int64_t kFrames = 3;
+
+}  // namespace
+
+ModelLayout::ModelLayout(const ModelConfig& config) : slots_(config.slots) {
+  Graph graph;
+  const Opple model(graph, config, {.batch = 1, .training = true});
+  add_weights(graph, model);
+  for (const std::string& network : model.groups()) add_optimiser(graph, network);
+}
+
+void ModelLayout::add_weights(Graph& graph, const Opple& model) {
+  for (const InitialTensor& tensor : model.tensors()) {
+    const ValueInfo& info = graph.info(tensor.value.id());
+    const ValueInfo& root = graph.info(info.root);
+    weights_.push_back({tensor.name, root.name, info.offset, info.spec.shape, tensor.initial});
+    groups_[root.name] = root.spec.bytes();
+    if (tensor.name.ends_with(kMean))
+      batch_counters_.push_back(tensor.name.substr(0, tensor.name.size() - kMean.size()) +
+                                "num_batches_tracked");
+  }
+}
+
+void ModelLayout::add_optimiser(Graph& graph, const std::string& network) {
+  adam(graph, network, {});
+  const std::string state = "adam/" + network;
+  groups_[state] = graph.group(state).spec().bytes();
+  const auto offset = [&](const std::string& name) { return graph.info(graph.find(name).id()).offset; };
+  // The means lie like the parameters.
+  for (const char* mean : {"/m", "/v"}) {
+    const std::string prefix = state + mean;
+    for (const LayoutEntry& weight : weights_) {
+      if (weight.group != network) continue;
+      optimiser_.push_back({prefix + "/" + weight.name, state, offset(prefix) + weight.offset, weight.shape,
+                            Initial::constant(0)});
+    }
+  }
+  const std::string correction = state + "/correction";
+  optimiser_.push_back(
+      {correction, state, offset(correction), graph.find(correction).shape(), Initial::constant(0)});
+}
+
+int64_t ModelLayout::calls_in_a_step(const std::string& counter, bool background_only) const {
+  if (background_only) return counter.starts_with("depth_model.") ? 1 : 0;
+  const bool decoder = counter.find("_att.") != std::string::npos;
+  return decoder ? kFrames * slots_ : kFrames;
+}
+
+}  // namespace vkopple

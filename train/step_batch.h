@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "models/opple.h"
+#include "train/data/triplets.h"
+
+namespace vkopple {
+
+// What chance decides in a step of training. Each is a function of seed and step alone, so that a run that was
+// stopped goes on as it would have.
+
+/// For every triplet of a batch whether it is shown backwards in time.
+std::vector<bool> reversed_triplets(uint64_t seed, uint64_t step, int batch, double probability);
+/// A permutation of 0 ... batch - 1, which pairs scenes for the collapse term.
+std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch);
+
+/// A batch as the model takes it.
+Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permutation);
+
+/// What step `step` of training shows.
+Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, double reverse_probability);
+
+}  // namespace vkopple

@@ -1,0 +1,153 @@
+#include "train/trainer.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <vector>
+
+#include "runtime/device.h"
+#include "runtime/error.h"
+#include "train/data/open_source.h"
+#include "train/depth_probe.h"
+#include "train/step_batch.h"
+#include "train/training_step.h"
+
+namespace vkopple {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kProbeBatch = 16;
+// Rooms to measure in are never those of training, whose seeds are small numbers as a rule.
+constexpr uint64_t kProbeSeedDistance = 1'000'003;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Of "rooms:SEED"; 0 for other data, which is measured in rooms all the same.
+uint64_t rooms_seed(std::string_view data) {
+  uint64_t seed = 0;
+  if (data.starts_with("rooms:")) std::from_chars(data.data() + 6, data.data() + data.size(), seed);
+  return seed;
+}
+
+/// 32 bits made of all 64: what dropout's random numbers take.
+uint32_t folded(uint64_t number) { return static_cast<uint32_t>(number ^ (number >> 32)); }
+
+void require_finite_losses(const Losses& losses, uint64_t step) {
+  for (const auto& [name, loss] : losses)
+    if (!std::isfinite(loss))
+      throw Error(
+          fmt::format("step {}: the loss {} is {}; the checkpoints before stay, try a smaller learning rate",
+                      step, name, loss));
+}
+
+std::string stage_text(const PlannedStage& planned) {
+  const TrainingStage& s = planned.stage;
+  std::vector<std::string_view> networks;
+  for (const Network network : s.networks) networks.push_back(kNetworkNames[static_cast<size_t>(network)]);
+  return fmt::format("stage {}: steps {} to {}, batch {}, learning rate {}, training {}", s.name,
+                     planned.begin + 1, planned.end, s.batch, s.learning_rate, fmt::join(networks, ", "));
+}
+
+}  // namespace
+
+/// What one stage needs at hand.
+struct Trainer::Stage {
+  const PlannedStage* planned;
+  std::unique_ptr<TripletSource> source;
+  std::unique_ptr<TrainingStep> training;
+  std::unique_ptr<DepthProbe> probe;
+};
+
+Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bool resume)
+    : device_(&device),
+      config_(std::move(config)),
+      options_(std::move(options)),
+      plan_(config_, options_.steps),
+      store_(device, config_.model),
+      saved_at_(Clock::now()) {
+  if (resume) {
+    position_ = load_checkpoint(options_.folder.latest(), store_, config_);
+    saved_step_ = position_.step;
+  } else {
+    store_.initialise(options_.seed);
+    position_.seed = options_.seed;
+  }
+  position_.data = options_.data;
+}
+
+Trainer::~Trainer() = default;
+
+Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
+  const TrainingStage& s = planned.stage;
+  const Lens lens(config_.model);
+  Stage stage{.planned = &planned, .source = nullptr, .training = nullptr, .probe = nullptr};
+  stage.source =
+      open_triplets(*device_, options_.data, lens, s.rooms, s.batch, position_.seed, Reading::kTraining);
+  stage.training = std::make_unique<TrainingStep>(*device_, config_, s, store_.groups());
+  if (options_.eval_every > 0)
+    stage.probe = std::make_unique<DepthProbe>(store_, config_.model, s.rooms, std::min(s.batch, kProbeBatch),
+                                               rooms_seed(options_.data) + kProbeSeedDistance);
+  return stage;
+}
+
+StepRecord Trainer::train_step(Stage& stage) {
+  const auto start = Clock::now();
+  const TrainingStage& s = stage.planned->stage;
+  const uint64_t step = position_.step;
+  const Triplets triplets =
+      training_triplets(*stage.source, position_.seed, step, config_.training.reverse_probability);
+  StepRecord record{.stage = s.name, .batch = s.batch};
+  record.losses = stage.training->run(triplets, folded(position_.seed), folded(step));
+  require_finite_losses(record.losses, step + 1);
+  store_.count_step(s.hypotheses == Hypotheses::kBackground);
+  record.seconds = seconds_since(start);
+  position_.step = step + 1;
+  position_.stage = plan_.stage_of(step);
+  position_.stage_step = position_.step - stage.planned->begin;
+  record.step = position_.step;
+  if (stage.probe && position_.step % options_.eval_every == 0) record.depth_r = stage.probe->measure();
+  return record;
+}
+
+void Trainer::save(bool numbered) {
+  if (numbered) save_checkpoint(options_.folder.numbered(position_.step), store_, config_, position_);
+  if (numbered || saved_step_ != position_.step)
+    save_checkpoint(options_.folder.latest(), store_, config_, position_);
+  saved_step_ = position_.step;
+  saved_at_ = Clock::now();
+}
+
+void Trainer::save_if_due() {
+  const bool numbered = options_.checkpoint_every > 0 && position_.step % options_.checkpoint_every == 0;
+  if (numbered || seconds_since(saved_at_) >= options_.seconds_between_saves) save(numbered);
+}
+
+bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
+  std::optional<TrainingLog> log;  // only once all that it needs is there
+  bool stopped = false;
+  while (position_.step < plan_.steps() && !stopped) {
+    const PlannedStage& planned = plan_.stages()[plan_.stage_of(position_.step)];
+    Stage stage = open_stage(planned);
+    options_.folder.create();
+    if (!log) log.emplace(options_.folder.log(), position_.step);
+    progress.say(stage_text(planned));
+    while (position_.step < planned.end && !stopped) {
+      const StepRecord record = train_step(stage);
+      log->add(record);
+      progress.show(record);
+      save_if_due();
+      stopped = stop();
+    }
+  }
+  save(false);
+  return position_.step >= plan_.steps();
+}
+
+}  // namespace vkopple

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "models/config.h"
+#include "train/checkpoint.h"
+#include "train/data/triplets.h"
+#include "train/model_store.h"
+#include "train/progress.h"
+#include "train/run_folder.h"
+#include "train/stage_plan.h"
+#include "train/training_log.h"
+
+namespace vkopple {
+
+struct TrainerOptions {
+  RunFolder folder;
+  std::string data;                    ///< as open_triplets takes it
+  std::optional<uint64_t> steps;       ///< of the whole run; see StagePlan
+  uint64_t seed = 0;                   ///< of weights, order, reversals, dropout
+  uint64_t checkpoint_every = 5000;    ///< steps between numbered checkpoints; 0: none
+  uint64_t eval_every = 250;           ///< steps between measurements of depth; 0: none
+  double seconds_between_saves = 600;  ///< after which latest.safetensors is written anyway
+};
+
+/// Trains a model by docs/model.md §7 and the stages of its configuration, on a folder of checkpoints and log.
+///
+/// Every step is a function of configuration, seed, data and the checkpoint before, so that a run that was
+/// stopped and resumed writes the same bytes as one that never was.
+class Trainer {
+ public:
+  /// A new run; with `resume` one that goes on from the folder's latest checkpoint, which must be of this
+  /// configuration. Throws Error.
+  Trainer(const Device& device, Config config, TrainerOptions options, bool resume);
+  ~Trainer();
+
+  /// Trains until the plan's end, or until `stop` says so after a step, and saves. Whether it came to the end.
+  /// On failure the checkpoints written before stay.
+  bool run(Progress& progress, const std::function<bool()>& stop);
+
+  const TrainingPosition& position() const { return position_; }
+  const StagePlan& plan() const { return plan_; }
+
+ private:
+  struct Stage;
+
+  Stage open_stage(const PlannedStage& planned);
+  StepRecord train_step(Stage& stage);
+  void save(bool numbered);
+  void save_if_due();
+
+  const Device* device_;
+  Config config_;
+  TrainerOptions options_;
+  StagePlan plan_;
+  ModelStore store_;
+  TrainingPosition position_;
+  std::optional<uint64_t> saved_step_;
+  std::chrono::steady_clock::time_point saved_at_;
+};
+
+}  // namespace vkopple

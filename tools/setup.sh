@@ -39,7 +39,7 @@ install_packages() {
     install --no-install-recommends "${missing[@]}" >/dev/null
 }
 
-build() {
+build() { # targets, all without any
   say "Building into build/$preset"
-  (cd "$root" && cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset")
+  (cd "$root" && cmake --preset "$preset" >/dev/null && cmake --build --preset "$preset" ${1:+--target "$@"})
 }

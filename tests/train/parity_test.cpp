@@ -18,6 +18,8 @@ void expect_parity(const Device& device, const std::string& name) {
 
 TEST(ParityTest, Rigid) { expect_parity(test_device(), "rigid.safetensors"); }
 
+TEST(ParityTest, WithoutWarpingAndJensenShannon) { expect_parity(test_device(), "nowarp_js.safetensors"); }
+
 TEST(ParityTest, Train) { expect_parity(test_device(), "train.safetensors"); }
 
 TEST(ParityTest, RigidOnTheOtherAccessPath) {

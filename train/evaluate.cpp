@@ -73,10 +73,13 @@ class Evaluation {
     for (int32_t& label : labels) --label;  // objects count from 0 in colours, as slots do
     const auto farthest = static_cast<float>(model_.config().max_depth);
     const auto background = static_cast<int32_t>(model_.config().slots);
-    grid_->push_back(
-        {image, overlay(image, inferred, background), overlay(image, labels, -1),
-         depth_picture(plane(part(percepts_.depth, index, count), batch.height, batch.width), farthest),
-         depth_picture(plane(part(batch.depth, index, count), batch.height, batch.width), farthest)});
+    const int zoom = zoom_for(batch.height);
+    const auto depth = [&](const std::vector<float>& values) {
+      return enlarge(depth_picture(plane(part(values, index, count), batch.height, batch.width), farthest),
+                     zoom);
+    };
+    grid_->push_back({enlarge(image, zoom), overlay(image, inferred, background, zoom),
+                      overlay(image, labels, -1, zoom), depth(percepts_.depth), depth(batch.depth)});
   }
 
   Perception& model_;
@@ -100,7 +103,8 @@ std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities
 }
 
 EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
-                          std::vector<std::vector<RgbImage>>* grid, size_t grid_rows) {
+                          std::vector<std::vector<RgbImage>>* grid, size_t grid_rows,
+                          const std::function<void(int64_t)>& progress) {
   Evaluation evaluation(model, grid, grid_rows);
   for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
     const TripletBatch batch = source.read(step);
@@ -112,6 +116,7 @@ EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t imag
     evaluation.see(batch);
     for (size_t i = 0; i < static_cast<size_t>(batch.batch) && evaluation.scores().images() < images; ++i)
       evaluation.add(batch, i);
+    if (progress) progress(evaluation.scores().images());
   }
   return evaluation.scores();
 }

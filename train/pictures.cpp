@@ -11,26 +11,57 @@ namespace {
 
 constexpr float kTint = 0.55F;
 constexpr int kGap = 4;
+constexpr int kComfortable = 128;  // pixels of height
 
 size_t pixel_count(const RgbImage& image) {
   return static_cast<size_t>(image.height) * static_cast<size_t>(image.width);
 }
 
+size_t offset(int y, int x, int width) {
+  return static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+}
+
 /// Whether a pixel's right or lower neighbour has another label.
 bool on_edge(std::span<const int32_t> labels, int height, int width, int y, int x) {
-  const auto at = [&](int row, int column) { return labels[static_cast<size_t>(row * width + column)]; };
+  const auto at = [&](int row, int column) { return labels[offset(row, column, width)]; };
   return (x + 1 < width && at(y, x + 1) != at(y, x)) || (y + 1 < height && at(y + 1, x) != at(y, x));
 }
 
-void paste(RgbImage& onto, const RgbImage& picture, int top, int left, int zoom) {
-  for (int c = 0; c < 3; ++c)
-    for (int y = 0; y < picture.height * zoom; ++y)
-      for (int x = 0; x < picture.width * zoom; ++x)
-        onto.pixels[(static_cast<size_t>(c) * static_cast<size_t>(onto.height) + static_cast<size_t>(top + y)) *
-                        static_cast<size_t>(onto.width) +
-                    static_cast<size_t>(left + x)] =
-            picture.pixels[static_cast<size_t>(c) * pixel_count(picture) +
-                           static_cast<size_t>((y / zoom) * picture.width + x / zoom)];
+template <class T>
+std::vector<T> enlarge_plane(std::span<const T> plane, int height, int width, int zoom) {
+  std::vector<T> out;
+  out.reserve(plane.size() * static_cast<size_t>(zoom) * static_cast<size_t>(zoom));
+  for (int y = 0; y < height * zoom; ++y)
+    for (int x = 0; x < width * zoom; ++x) out.push_back(plane[offset(y / zoom, x / zoom, width)]);
+  return out;
+}
+
+void paste(RgbImage& onto, const RgbImage& picture, int top, int left) {
+  for (size_t c = 0; c < 3; ++c)
+    for (int y = 0; y < picture.height; ++y)
+      std::copy_n(picture.pixels.begin() +
+                      static_cast<std::ptrdiff_t>(c * pixel_count(picture) + offset(y, 0, picture.width)),
+                  picture.width,
+                  onto.pixels.begin() +
+                      static_cast<std::ptrdiff_t>(c * pixel_count(onto) + offset(top + y, left, onto.width)));
+}
+
+RgbImage tint(const RgbImage& image, std::span<const int32_t> labels, int32_t background) {
+  RgbImage out(image.height, image.width);
+  const size_t count = pixel_count(image);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const size_t i = offset(y, x, image.width);
+      const float grey =
+          0.3F * image.pixels[i] + 0.59F * image.pixels[count + i] + 0.11F * image.pixels[2 * count + i];
+      const auto colour = label_colour(labels[i]);
+      const bool edge = on_edge(labels, image.height, image.width, y, x);
+      for (size_t c = 0; c < 3; ++c) {
+        const float tinted = labels[i] == background ? grey : (1 - kTint) * grey + kTint * colour[c];
+        out.pixels[c * count + i] = edge ? 1.0F : tinted;
+      }
+    }
+  return out;
 }
 
 }  // namespace
@@ -51,23 +82,17 @@ std::array<float, 3> label_colour(int index) {
   return kColours[static_cast<size_t>(index) % kColours.size()];
 }
 
-RgbImage overlay(const RgbImage& image, std::span<const int32_t> labels, int32_t background) {
-  if (labels.size() != pixel_count(image)) throw Error("labels and picture have different sizes");
-  RgbImage out(image.height, image.width);
-  const size_t count = pixel_count(image);
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const auto i = static_cast<size_t>(y * image.width + x);
-      const float grey =
-          0.3F * image.pixels[i] + 0.59F * image.pixels[count + i] + 0.11F * image.pixels[2 * count + i];
-      const auto colour = label_colour(labels[i]);
-      const bool edge = on_edge(labels, image.height, image.width, y, x);
-      for (size_t c = 0; c < 3; ++c) {
-        const float tinted = labels[i] == background ? grey : (1 - kTint) * grey + kTint * colour[c];
-        out.pixels[c * count + i] = edge ? 1.0F : tinted;
-      }
-    }
+int zoom_for(int height) { return std::max(1, (kComfortable + height - 1) / height); }
+
+RgbImage enlarge(const RgbImage& image, int zoom) {
+  RgbImage out(image.height * zoom, image.width * zoom);
+  out.pixels = enlarge_plane<float>(image.pixels, 3 * image.height, image.width, zoom);
   return out;
+}
+
+RgbImage overlay(const RgbImage& image, std::span<const int32_t> labels, int32_t background, int zoom) {
+  if (labels.size() != pixel_count(image)) throw Error("labels and picture have different sizes");
+  return tint(enlarge(image, zoom), enlarge_plane(labels, image.height, image.width, zoom), background);
 }
 
 RgbImage depth_picture(const Plane<float>& depth, float farthest) {
@@ -91,19 +116,19 @@ RgbImage depth_picture(const Plane<float>& depth, float farthest) {
   return out;
 }
 
-RgbImage picture_grid(const std::vector<std::vector<RgbImage>>& rows, int zoom) {
+RgbImage picture_grid(const std::vector<std::vector<RgbImage>>& rows) {
   if (rows.empty() || rows[0].empty()) throw Error("a picture grid needs at least one picture");
   const int height = rows[0][0].height;
   const int width = rows[0][0].width;
   const auto columns = static_cast<int>(rows[0].size());
   const auto count = static_cast<int>(rows.size());
-  RgbImage grid(count * (height * zoom + kGap) + kGap, columns * (width * zoom + kGap) + kGap);
+  RgbImage grid(count * (height + kGap) + kGap, columns * (width + kGap) + kGap);
   std::fill(grid.pixels.begin(), grid.pixels.end(), 1.0F);
   for (int r = 0; r < count; ++r)
     for (int c = 0; c < columns; ++c) {
       const RgbImage& picture = rows[static_cast<size_t>(r)].at(static_cast<size_t>(c));
       if (picture.height != height || picture.width != width) throw Error("pictures of a grid differ in size");
-      paste(grid, picture, kGap + r * (height * zoom + kGap), kGap + c * (width * zoom + kGap), zoom);
+      paste(grid, picture, kGap + r * (height + kGap), kGap + c * (width + kGap));
     }
   return grid;
 }

@@ -29,7 +29,7 @@ class ShardSource : public TripletSource {
   /// data set smaller than a batch repeats itself. In evaluation the set starts again behind its last triplet.
   TripletBatch read(uint64_t step) override;
 
-  uint64_t triplets() const { return triplets_.size(); }
+  std::optional<uint64_t> size() const override { return triplets_.size(); }
 
  private:
   struct Triplet {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace vkopple {
@@ -32,6 +33,8 @@ class TripletSource {
  public:
   virtual ~TripletSource() = default;
   virtual TripletBatch read(uint64_t step) = 0;
+  /// How many triplets there are before they come again; nothing where they never do.
+  virtual std::optional<uint64_t> size() const { return std::nullopt; }
 };
 
 /// Every evenly strided triplet of `frames` frames, counted from 0: (0,1,2), (1,2,3), ..., (0,2,4), ...

@@ -89,7 +89,7 @@ std::vector<Name> names(const TripletBatch& batch) {
 TEST_F(ShardSourceTest, AnEpochShowsEveryStridedTripletOnce) {
   write({scene(0, 5), scene(1, 3), scene(2, 4)});  // 4 + 1 + 2 triplets
   ShardSource source = open(7);
-  EXPECT_EQ(source.triplets(), 7U);
+  EXPECT_EQ(source.size(), 7U);
   const std::vector<Name> expected{{0, 0, 1, 2}, {0, 0, 2, 4}, {0, 1, 2, 3}, {0, 2, 3, 4},
                                    {1, 0, 1, 2}, {2, 0, 1, 2}, {2, 1, 2, 3}};
   const auto first = names(source.read(0)), second = names(source.read(1));
@@ -124,7 +124,7 @@ TEST_F(ShardSourceTest, ASmallSetRepeatsItself) {
 TEST_F(ShardSourceTest, EvaluationTakesEachSceneOnceInOrder) {
   write({scene(0, 7), scene(1, 2), scene(2, 4), scene(3, 3)});
   ShardSource source = open(2, 1, Reading::kEvaluation);
-  EXPECT_EQ(source.triplets(), 3U);
+  EXPECT_EQ(source.size(), 3U);
   EXPECT_EQ(names(source.read(0)), (std::vector<Name>{{0, 2, 3, 4}, {2, 0, 1, 2}}));
   EXPECT_EQ(names(source.read(1)), (std::vector<Name>{{3, 0, 1, 2}, {0, 2, 3, 4}}));
   const TripletBatch batch = source.read(0);

@@ -3,9 +3,12 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "runtime/error.h"
 #include "tools/commands.h"
@@ -14,6 +17,19 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kWrongUse = 2;
+
+/// Not by fmt::print, which throws where the stream is full.
+int fail(int code, const std::string& message) {
+  std::fputs(("vkopple: " + message + "\n").c_str(), stderr);
+  return code;
+}
+
+/// What could not be written is known only when it leaves the buffer.
+int check_output() {
+  if (std::fflush(stdout) == 0) return 0;
+  return fail(kFailed,
+              fmt::format("the results cannot be written to standard output: {}", std::strerror(errno)));
+}
 
 int run(int argc, char** argv) {
   CLI::App app(
@@ -24,27 +40,22 @@ int run(int argc, char** argv) {
   for (const vkopple::AddCommand add : vkopple::all_commands()) add(app);
   try {
     app.parse(argc, argv);
-    return 0;
+    return check_output();
   } catch (const CLI::RuntimeError& error) {
     return error.get_exit_code();
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
     const auto rest = app.remaining();
-    if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-'))
-      fmt::print(stderr, "vkopple: there is no command {} (see vkopple --help)\n", rest.front());
-    else
-      fmt::print(stderr, "vkopple: {} (see vkopple --help)\n", error.what());
-    return kWrongUse;
+    const bool unknown = app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-');
+    const std::string what = unknown ? "there is no command " + rest.front() : error.what();
+    return fail(kWrongUse, what + " (see vkopple --help)");
   } catch (const vkopple::UsageError& error) {
-    fmt::print(stderr, "vkopple: {}\n", error.what());
-    return kWrongUse;
+    return fail(kWrongUse, error.what());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "vkopple: out of memory; use a smaller --batch or image size\n");
-    return kFailed;
+    return fail(kFailed, "out of memory; use a smaller --batch or image size");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vkopple: {}\n", error.what());
-    return kFailed;
+    return fail(kFailed, error.what());
   }
 }
 

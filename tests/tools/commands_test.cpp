@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <set>
 
+#include "tests/support/file_size_limit.h"
 #include "tests/support/program.h"
 
 namespace vkopple {
@@ -59,6 +60,11 @@ TEST(Commands, TheHelpListsThemAll) {
 
 TEST(Commands, ADeviceThatIsNotThereIsNamed) {
   expect_failure(run_vkopple({"gradcheck", "sigmoid", "--device", "no such device"}), 2, {"no such device"});
+}
+
+TEST(Commands, ResultsThatCannotBeWrittenAreAFailure) {
+  const test::FileSizeLimit limit(16);
+  EXPECT_EQ(run_vkopple({"devices", "--json"}).code, 1);
 }
 
 }  // namespace

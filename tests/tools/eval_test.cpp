@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/support/program.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/tiny_model.h"
+#include "train/image_io.h"
+#include "train/shards.h"
+
+namespace vkopple {
+namespace {
+
+using nlohmann::json;
+using test::expect_failure;
+using test::expect_success;
+using test::Outcome;
+using test::run_vkopple;
+using test::TempFolder;
+
+class EvalCommand : public testing::Test {
+ protected:
+  EvalCommand() { test::write_tiny_model(model()); }
+
+  std::string model() const { return folder_ / "model.safetensors"; }
+  Outcome eval(const std::string& data, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"eval", model(), "--data", data};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_vkopple(words);
+  }
+  std::string generated(int scenes) const {
+    const std::string out = folder_ / "rooms";
+    expect_success(run_vkopple({"generate", out, "--scenes", std::to_string(scenes), "--seed", "5", "--size",
+                                "16", "--frames", "3", "--config", "tiny"}));
+    return out;
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(EvalCommand, ScoresRoomsAsJson) {
+  const auto outcome = eval("rooms:2", {"--images", "3", "--json"});
+  expect_success(outcome);
+  EXPECT_TRUE(outcome.errors.empty()) << outcome.errors;
+  const json scores = json::parse(outcome.output);
+  for (const char* key : {"ari_fg", "ari_fg_multi", "iou", "iou_objects", "depth_r", "angle_r", "distance_r"})
+    EXPECT_TRUE(scores.contains(key)) << key;
+  EXPECT_EQ(scores.at("images"), 3);
+  EXPECT_GE(scores.at("skipped"), 0);
+  EXPECT_GT(scores.at("iou"), 0.0);
+}
+
+TEST_F(EvalCommand, TheBatchChangesNoScore) {
+  const auto one = eval("rooms:2", {"--images", "3", "--json", "--batch", "1"});
+  const auto two = eval("rooms:2", {"--images", "3", "--json", "--batch", "2"});
+  expect_success(one);
+  const json a = json::parse(one.output), b = json::parse(two.output);
+  EXPECT_NEAR(a.at("depth_r").get<double>(), b.at("depth_r").get<double>(), 1e-4);
+  EXPECT_EQ(b.at("images"), 3);
+}
+
+TEST_F(EvalCommand, EndsWithTheData) {
+  const auto outcome = eval(generated(3), {"--images", "10", "--json"});
+  expect_success(outcome);
+  EXPECT_EQ(json::parse(outcome.output).at("images"), 3);
+  EXPECT_NE(outcome.errors.find("3 of 10 images"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(EvalCommand, TheTableAndTheGrid) {
+  const std::string grid = folder_ / "grid.png";
+  const auto outcome = eval(generated(3), {"--images", "3", "--grid", grid, "--rows", "2"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.output.find("ARI-fg"), std::string::npos) << outcome.output;
+  EXPECT_NE(outcome.errors.find("image, inferred objects, true objects"), std::string::npos) << outcome.errors;
+  const RgbImage picture = read_rgb(grid);
+  EXPECT_EQ(picture.height, 2 * (128 + 4) + 4);
+  EXPECT_EQ(picture.width, 5 * (128 + 4) + 4);
+}
+
+TEST_F(EvalCommand, NetworksThatHaveNotLearnedAreNamed) {
+  test::write_tiny_model(model(), 0);
+  const std::string grid = folder_ / "grid.png";
+  const auto outcome = eval("rooms:2", {"--images", "1", "--grid", grid});
+  expect_success(outcome);
+  EXPECT_NE(outcome.errors.find("warning: networks that have not learned yet at step 4"), std::string::npos)
+      << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("inferred objects"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(read_rgb(grid).width, 4 * (128 + 4) + 4);
+}
+
+TEST_F(EvalCommand, SaysWhenTheRoomsAreThoseOfTraining) {
+  const auto outcome = eval("rooms:7", {"--images", "1"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.errors.find("was trained on rooms:7"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(EvalCommand, RefusesWrongUse) {
+  expect_failure(eval("rooms:x"), 2, {"rooms:x"});
+  expect_failure(eval("rooms:1", {"--stage", "nap"}), 2, {"nap", "depth, all"});
+  expect_failure(eval("rooms:1", {"--images", "0"}), 2, {"--images"});
+  expect_failure(eval("rooms:1", {"--rows", "2"}), 2, {"--grid"});
+  expect_failure(run_vkopple({"eval", model()}), 2, {"--data"});
+}
+
+TEST_F(EvalCommand, NamesWhatCannotBeRead) {
+  expect_failure(eval(folder_ / "absent"), 1, {"absent"});
+  expect_failure(eval(folder_.path()), 1, {folder_.path()});
+}
+
+TEST_F(EvalCommand, NeedsTheTruth) {
+  ShardReader reader(generated(1));
+  auto sample = reader.next();
+  ASSERT_TRUE(sample);
+  std::erase_if(sample->parts, [](const auto& part) { return part.first.ends_with("exr"); });
+  ShardWriter writer(folder_ / "blind", "blind", 1);
+  writer.add(*sample);
+  expect_failure(eval(folder_ / "blind"), 1, {"true labels"});
+}
+
+}  // namespace
+}  // namespace vkopple

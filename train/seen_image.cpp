@@ -1,0 +1,91 @@
+#include "train/seen_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "runtime/error.h"
+#include "train/evaluate.h"
+
+namespace vkopple {
+namespace {
+
+void require_numbers(const std::vector<float>& values) {
+  if (std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) return;
+  throw Error("what the model infers is not a finite number; its weights are unusable, train it again");
+}
+
+double share_of(const Plane<std::uint32_t>& mask, std::uint32_t index) {
+  const auto count = std::count(mask.pixels.begin(), mask.pixels.end(), index);
+  return static_cast<double>(count) / static_cast<double>(mask.pixels.size());
+}
+
+SeenObject object(std::span<const float> location, std::span<const float> log_pose) {
+  SeenObject seen;
+  std::copy(location.begin(), location.end(), seen.location.begin());
+  seen.angle = std::atan2(seen.location[0], seen.location[1]);
+  seen.distance = std::hypot(seen.location[0], seen.location[1]);
+  const auto best = std::max_element(log_pose.begin(), log_pose.end());
+  const auto bin = static_cast<double>(best - log_pose.begin());
+  seen.yaw = 2 * std::numbers::pi * bin / static_cast<double>(log_pose.size());
+  seen.yaw_probability = std::exp(static_cast<double>(*best));
+  return seen;
+}
+
+void count_shares(SeenImage& seen) {
+  for (size_t k = 0; k < seen.objects.size(); ++k)
+    seen.objects[k].share = share_of(seen.mask, static_cast<std::uint32_t>(k));
+}
+
+void add_objects(SeenImage& seen, const Percepts& percepts) {
+  const auto indices = mask_indices(percepts.masks, static_cast<int64_t>(seen.background) + 1);
+  std::copy(indices.begin(), indices.end(), seen.mask.pixels.begin());
+  const size_t slots = seen.background;
+  const size_t bins = percepts.log_pose.size() / slots;
+  for (size_t k = 0; k < slots; ++k)
+    seen.objects.push_back(object(std::span(percepts.location).subspan(3 * k, 3),
+                                  std::span(percepts.log_pose).subspan(bins * k, bins)));
+  count_shares(seen);
+}
+
+}  // namespace
+
+SeenImage see_image(Perception& model, const RgbImage& image) {
+  const Percepts percepts = model.see(image.pixels);
+  for (const auto* values : {&percepts.depth, &percepts.masks, &percepts.location, &percepts.log_pose})
+    require_numbers(*values);
+  SeenImage seen{{image.height, image.width}, {image.height, image.width}, {}};
+  seen.background = static_cast<std::uint32_t>(model.config().slots);
+  seen.depth.pixels = percepts.depth;
+  std::fill(seen.mask.pixels.begin(), seen.mask.pixels.end(), seen.background);
+  if (!percepts.masks.empty()) add_objects(seen, percepts);
+  return seen;
+}
+
+SeenImage resize(const SeenImage& seen, int height, int width) {
+  SeenImage resized{resize_nearest(seen.mask, height, width), resize(seen.depth, height, width), seen.objects,
+                    seen.background};
+  count_shares(resized);
+  return resized;
+}
+
+nlohmann::ordered_json to_json(const SeenImage& seen) {
+  auto objects = nlohmann::ordered_json::array();
+  for (size_t k = 0; k < seen.objects.size(); ++k) {
+    const SeenObject& o = seen.objects[k];
+    objects.push_back({{"slot", k},
+                       {"share", o.share},
+                       {"location", o.location},
+                       {"angle", o.angle},
+                       {"distance", o.distance},
+                       {"yaw", o.yaw},
+                       {"yaw_probability", o.yaw_probability}});
+  }
+  return {{"height", seen.mask.height},
+          {"width", seen.mask.width},
+          {"background", {{"index", seen.background}, {"share", share_of(seen.mask, seen.background)}}},
+          {"objects", objects}};
+}
+
+}  // namespace vkopple

@@ -122,6 +122,10 @@ void add_train(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--resume", o->resume,
                     "Go on with the run in --out, to the same bytes as if it had never stopped");
+  command->add_flag(
+      "--deterministic",
+      "Take every sum in a fixed order, so that two runs on a device give the same bytes; the default, "
+      "and so far the only way there is");
   add_device_option(*command, o->device);
   command->footer(
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"

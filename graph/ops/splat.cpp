@@ -88,7 +88,7 @@ Needs Splat::needs(std::span<const TensorSpec> x, const Caps&) const {
   const SplatPush push = push_of(s, beta_);
   return {.saved = {row_major(s.with(1, 1))},  // the sums of weights by which the means were divided
           .forward_scratch = Scratch(push, {}).bytes,
-          .backward_scratch = push.targets() * 32,
+          .backward_scratch = push.targets() * 48,
           .outputs_for_backward = 0b011};
 }
 

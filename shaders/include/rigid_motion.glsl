@@ -1,4 +1,5 @@
-// The motions of camera and objects. Declare READ1 bindings location, omega and m23 before.
+// The motions of camera and objects. Include precise.glsl and declare READ1 bindings location, omega and m23
+// before.
 mat3 camera_turn(uint image) {
   mat3 m;
   for (uint row = 0; row < 3; ++row)
@@ -10,8 +11,7 @@ vec3 camera_shift(uint image) {
 }
 mat3 object_turn(uint object) {
   float angle = load1(omega, object);
-  float c = cos(angle);
-  float s = sin(angle);
-  return mat3(c, s, 0, -s, c, 0, 0, 0, 1);
+  vec2 turn = precise_cos_sin(angle);
+  return mat3(turn.x, turn.y, 0, -turn.y, turn.x, 0, 0, 0, 1);
 }
 #define object_vector(name, object) vec3(load1(name, (object) * 3), load1(name, (object) * 3 + 1), load1(name, (object) * 3 + 2))

@@ -1,6 +1,8 @@
 // What the kernels of the splat share. A point is a source pixel under one hypothesis. Coordinates are those of a grid that has a
 // ring of one pixel around the image: pixel (0, 0) lies at (1, 1). Cell (column, row) is the square between the grid's pixels
 // (column, row) and (column + 1, row + 1); points in other cells, and invalid ones, reach no pixel.
+#include "precise.glsl"
+
 layout(push_constant) uniform Push {
   uint images;
   uint slots;
@@ -30,4 +32,4 @@ bool lands(vec3 uvd, out vec2 at) {
 // Of a point that lands.
 uvec2 cell_of(vec2 at) { return uvec2(clamp(floor(at), vec2(0), vec2(p.width, p.height))); }
 
-float nearness(float d) { return exp(-p.beta * d); }
+float nearness(float d) { return precise_exp(-p.beta * d); }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "planes.glsl"
+#include "precise.glsl"
 
 // y = (image, log(depth + 1e-5)) mask, a vec4 for every hypothesis and pixel. One invocation takes one pixel of an image under
 // all hypotheses.
@@ -33,7 +34,7 @@ void main() {
   uint n = i / p.pixels;
   uint pixel = i - n * p.pixels;
   float d = load1(depth, i) + 1e-5;
-  vec4 seen = vec4(load3(image, n * 3 * p.pixels + pixel, p.pixels), log(d));
+  vec4 seen = vec4(load3(image, n * 3 * p.pixels + pixel, p.pixels), precise_log(d));
   uint at = n * p.slots * p.pixels + pixel;  // of masks, and of vec4s of y
 #ifdef FORWARD
   for (uint s = 0; s < p.slots; ++s, at += p.pixels) store4(y, at, seen * load1(masks, at))

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "planes.glsl"
+#include "precise4.glsl"
 
 // Mean over the hypotheses of (colour, depth) = (1, 1, 1, max_depth) sigmoid(y 0-3) + (0, 0, 0, 1e-5), weighted by softmax(y 4).
 // Every pixel of a hypothesis has two vec4s: y 0-3, and a plane later (y 4, padding). One invocation takes one pixel of an image.
@@ -26,8 +27,6 @@ READ1(4, ddepth)
 WRITE4(5, dy)
 #endif
 
-vec4 sigmoid(vec4 x) { return 1.0 / (1.0 + exp(-x)); }
-
 void main() {
   uint i = flat_index();
   if (i >= p.count) return;
@@ -44,21 +43,21 @@ void main() {
   vec4 mean = vec4(0);
   for (uint s = 0; s < p.slots; ++s) {
     uint at = first + 2 * s * p.pixels;
-    float weight = exp(load4(y, at + p.pixels).x - most);
+    float weight = precise_exp(load4(y, at + p.pixels).x - most);
     sum += weight;
-    mean += weight * sigmoid(load4(y, at));
+    mean += weight * precise_sigmoid(load4(y, at));
   }
   mean = scale * mean / sum;
   store3(image, colour, p.pixels, mean.xyz)
   depth[i] = mean.w + 1e-5;
 #else
-  for (uint s = 0; s < p.slots; ++s) sum += exp(load4(y, first + (2 * s + 1) * p.pixels).x - most);
+  for (uint s = 0; s < p.slots; ++s) sum += precise_exp(load4(y, first + (2 * s + 1) * p.pixels).x - most);
   vec4 mean = vec4(load3(image, colour, p.pixels), load1(depth, i) - 1e-5);
   vec4 g = vec4(load3(dimage, colour, p.pixels), load1(ddepth, i));
   for (uint s = 0; s < p.slots; ++s) {
     uint at = first + 2 * s * p.pixels;
-    float weight = exp(load4(y, at + p.pixels).x - most) / sum;
-    vec4 value = sigmoid(load4(y, at));
+    float weight = precise_exp(load4(y, at + p.pixels).x - most) / sum;
+    vec4 value = precise_sigmoid(load4(y, at));
     add4(dy, at, weight * g * scale * value * (1.0 - value), p.accumulate)
     add4(dy, at + p.pixels, vec4(weight * dot(g, scale * value - mean), 0, 0, 0), p.accumulate)
   }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "planes.glsl"
+#include "precise.glsl"
 
 // moved (B, K+1, 3, H, W) = M [Rz(omega)(P - X) + X + v], and M P for the background, which is last. `forward`: one invocation takes
 // every strips-th pixel of one hypothesis. `points`: the gradient of P, one invocation the same of an image.

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "planes.glsl"
+#include "precise.glsl"
 
 // Gradients of what moves the objects, sums over all pixels in a fixed order. With g = M^T dmoved, q = Rz(omega)(P - X) and u the z
 // axis: dv = sum g, domega = sum g (u x q), dX = (1 - Rz^T) dv. `strips`: one invocation sums g and g (u x q) over every
@@ -60,9 +61,10 @@ void main() {
   vec4 sum = vec4(0);
   for (uint strip = 0; strip < p.strips; ++strip) sum += load4(partial, object * p.strips + strip);
   float angle = load1(omega, object);
-  float s = sin(angle);
+  float s = precise_cos_sin(angle).y;
   // (1 - Rz^T) dv; 1 - cos through half the angle, which keeps the digits of small turns.
-  float less = 2.0 * sin(0.5 * angle) * sin(0.5 * angle);
+  float half_sine = precise_cos_sin(0.5 * angle).y;
+  float less = 2.0 * half_sine * half_sine;
   vec3 d = vec3(less * sum.x - s * sum.y, less * sum.y + s * sum.x, 0);
   for (uint axis = 0; axis < 3; ++axis) {
     if (p.want_location != 0) add1(dlocation, object * 3 + axis, d[axis], p.accumulate_location)

@@ -2,6 +2,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "precise.glsl"
 
 // Softmax over K logits (K, B, H, W) and a 0, to masks (B, K+1, H, W). One invocation takes one pixel.
 layout(push_constant) uniform Push {
@@ -28,11 +29,11 @@ void main() {
 #ifdef FORWARD
   float most = 0.0;
   for (uint k = 0; k < p.slots; ++k) most = max(most, load1(logits, k * p.count + i));
-  float sum = exp(-most);
-  for (uint k = 0; k < p.slots; ++k) sum += exp(load1(logits, k * p.count + i) - most);
+  float sum = precise_exp(-most);
+  for (uint k = 0; k < p.slots; ++k) sum += precise_exp(load1(logits, k * p.count + i) - most);
   float scale = 1.0 / sum;
-  for (uint k = 0; k < p.slots; ++k) masks[first + k * p.pixels] = exp(load1(logits, k * p.count + i) - most) * scale;
-  masks[first + p.slots * p.pixels] = exp(-most) * scale;
+  for (uint k = 0; k < p.slots; ++k) masks[first + k * p.pixels] = precise_exp(load1(logits, k * p.count + i) - most) * scale;
+  masks[first + p.slots * p.pixels] = precise_exp(-most) * scale;
 #else
   float mean = 0.0;
   for (uint k = 0; k <= p.slots; ++k) mean += load1(masks, first + k * p.pixels) * load1(dmasks, first + k * p.pixels);

@@ -6,8 +6,8 @@
 #include "splat.glsl"
 
 // With the mean m = (warped, depth) of values f = (colour, d) and its gradient g, a point's weight in a pixel has the gradient
-// G = (g f - g m) / divisor. `targets` leaves (g / divisor) and (g m / divisor, dtotal) of each pixel, `points` gathers them: one
-// invocation takes one point and its four pixels.
+// G = g (f - m) / divisor. `targets` leaves g / divisor, m and dtotal of each pixel, `points` gathers them: one invocation takes
+// one point and its four pixels. The difference comes before the product: where few points make a pixel, f is nearly m.
 #ifdef TARGETS
 READ1(0, divisors)
 READ1(1, warped)
@@ -25,8 +25,9 @@ void main() {
   uint colour = i + image * 2 * pixels;
   vec4 g = vec4(load3(dwarped, colour, pixels), load1(ddepth, i)) / load1(divisors, i);
   vec4 mean = vec4(load3(warped, colour, pixels), load1(depth, i));
-  store4(pulls, 2 * i, g)
-  store4(pulls, 2 * i + 1, vec4(dot(g, mean), load1(dtotal, i), 0, 0))
+  store4(pulls, 3 * i, g)
+  store4(pulls, 3 * i + 1, mean)
+  store4(pulls, 3 * i + 2, vec4(load1(dtotal, i), 0, 0, 0))
 }
 #else
 READ1(0, image)
@@ -54,13 +55,12 @@ void main() {
     for (uint corner = 0; corner < 4; ++corner) {
       uvec2 target = cell + uvec2(corner & 1, corner >> 1);
       if (target.x < 1 || target.y < 1 || target.x > p.width || target.y > p.height) continue;
-      uint pull = 2 * (n * pixels + (target.y - 1) * p.width + target.x - 1);
+      uint pull = 3 * (n * pixels + (target.y - 1) * p.width + target.x - 1);
       vec4 g = load4(pulls, pull);
-      vec2 rest = load4(pulls, pull + 1).xy;
       vec2 off = at - vec2(target);
       vec2 share = 1.0 - abs(off);
-      float of_near = dot(g, value) - rest.x;
-      float of_a = near * of_near + rest.y;
+      float of_near = dot(g, value - load4(pulls, pull + 1));
+      float of_a = near * of_near + load4(pulls, pull + 2).x;
       share_slope += share.x * share.y * of_a;
       slope.xy -= w * of_a * sign(off) * share.yx;
       slope.z += w * share.x * share.y * near * (g.w - p.beta * of_near);

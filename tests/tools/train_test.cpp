@@ -60,6 +60,8 @@ TEST_F(TrainCommand, RefusesWhatCannotBe) {
   expect_failure(train({config(), "--data", folder_ / "absent", "--out", out()}), 1, {"absent"});
   expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--steps", "0"}), 2, {"--steps"});
   expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--batch", "0"}), 2, {"--batch"});
+  for (const std::string option : {"--steps", "--seed", "--checkpoint-every", "--eval-every"})
+    expect_failure(train({config(), "--data", "rooms:1", "--out", out(), option, "-1"}), 2, {option});
   expect_failure(train({"--out", out(), "--resume"}), 2, {out(), "latest.safetensors"});
   EXPECT_FALSE(std::filesystem::exists(out()));
 }

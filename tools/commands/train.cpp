@@ -106,20 +106,26 @@ void add_train(CLI::App& app) {
   command->add_option("--data", o->data,
                       "rooms:SEED draws new rooms at every step; or a shard, or a folder of shards");
   command->add_option("--out", o->out, "Folder of the run: checkpoints and log.jsonl")->required();
-  command->add_option("--steps", o->steps,
-                      "Steps of the whole run over all stages; the last stage ends there (default: what the "
-                      "configuration says, and 15,125,000 triplets for a stage without end)");
+  // Negative numbers would wrap around.
+  command
+      ->add_option("--steps", o->steps,
+                   "Steps of the whole run over all stages; the last stage ends there (default: what the "
+                   "configuration says, and 15,125,000 triplets for a stage without end)")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--batch", o->batch, "Triplets of a step, in every stage")->check(CLI::Range(1, 4096));
-  command->add_option("--seed", o->seed, "Of weights, order and dropout (default: 0)");
+  command->add_option("--seed", o->seed, "Of weights, order and dropout (default: 0)")
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--checkpoint-every", o->checkpoint_every,
                    "Steps between checkpoints step-NNNNNN.safetensors, all of which are kept; 0: none. "
                    "latest.safetensors is written then, every ten minutes, and at the end")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--eval-every", o->eval_every,
                    "Steps between measurements of depth in unseen rooms, for the log; 0: none")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--resume", o->resume,
                     "Go on with the run in --out, to the same bytes as if it had never stopped");
   command->add_flag_callback(

@@ -108,6 +108,12 @@ TEST_F(EvalCommand, NamesWhatCannotBeRead) {
   expect_failure(eval(folder_.path()), 1, {folder_.path()});
 }
 
+TEST_F(EvalCommand, AGridThatCannotBeWrittenCostsNoScores) {
+  const auto outcome = eval("rooms:2", {"--images", "1", "--json", "--grid", folder_ / "absent" / "grid.png"});
+  expect_failure(outcome, 1, {"grid.png"});
+  EXPECT_EQ(json::parse(outcome.output).at("images"), 1);
+}
+
 TEST_F(EvalCommand, NeedsTheTruth) {
   ShardReader reader(generated(1));
   auto sample = reader.next();

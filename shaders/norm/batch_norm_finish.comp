@@ -27,17 +27,17 @@ vec4 running(bool variance) {
 
 vec4 mean_of(uint base) {
   vec4 origin = load4(partials, base);
-  vec4 sum = vec4(0);
+  vec4 sum = vec4(0), lost = vec4(0);
   for (uint q = gl_LocalInvocationID.x; q < p.strips; q += gl_WorkGroupSize.x)
-    sum += float(strip_count(q)) * (load4(partials, base + 2 * q) - origin);
+    ADD_COMPENSATED(vec4, sum, lost, float(strip_count(q)) * (load4(partials, base + 2 * q) - origin))
   return origin + workgroup_sum(sum) / float(p.items);
 }
 
 vec4 squares_of(uint base, vec4 mean) {
-  vec4 sum = vec4(0);
+  vec4 sum = vec4(0), lost = vec4(0);
   for (uint q = gl_LocalInvocationID.x; q < p.strips; q += gl_WorkGroupSize.x) {
     vec4 d = load4(partials, base + 2 * q) - mean;
-    sum += load4(partials, base + 2 * q + 1) + float(strip_count(q)) * d * d;
+    ADD_COMPENSATED(vec4, sum, lost, load4(partials, base + 2 * q + 1) + float(strip_count(q)) * d * d)
   }
   return workgroup_sum(sum);
 }

@@ -24,10 +24,10 @@ void main() {
   vec4 all = vec4(0), all_xhat = vec4(0);
   for (uint group = 0; group < p.groups; ++group) {
     uint entry = group * p.blocks + cb;
-    vec4 sum = vec4(0), product = vec4(0);
+    vec4 sum = vec4(0), lost = vec4(0), product = vec4(0), product_lost = vec4(0);
     for (uint q = gl_LocalInvocationID.x; q < p.strips; q += gl_WorkGroupSize.x) {
-      sum += load4(partials, (entry * p.strips + q) * 2);
-      product += load4(partials, (entry * p.strips + q) * 2 + 1);
+      ADD_COMPENSATED(vec4, sum, lost, load4(partials, (entry * p.strips + q) * 2))
+      ADD_COMPENSATED(vec4, product, product_lost, load4(partials, (entry * p.strips + q) * 2 + 1))
     }
     vec4 inverse = load4(table, entry * 4 + 3);
     sum = workgroup_sum(sum);

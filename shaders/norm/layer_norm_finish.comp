@@ -30,20 +30,23 @@ void main() {
   float elements = float(p.items) * float(p.channels);
 #ifdef FORWARD
   float origin = load4(partials, base).x;
-  float sum = 0;
-  for (uint e = own; e < entries; e += step) sum += dot(weights(e), load4(partials, base + 2 * e) - origin);
+  float sum = 0, lost = 0;
+  for (uint e = own; e < entries; e += step)
+    ADD_COMPENSATED(float, sum, lost, dot(weights(e), load4(partials, base + 2 * e) - origin))
   float mean = origin + total(sum) / elements;
   sum = 0;
+  lost = 0;
   for (uint e = own; e < entries; e += step) {
     vec4 d = load4(partials, base + 2 * e) - mean;
-    sum += dot(weights(e), d * d) + dot(real_lanes(e / p.strips), load4(partials, base + 2 * e + 1));
+    vec4 squares = weights(e) * d * d + real_lanes(e / p.strips) * load4(partials, base + 2 * e + 1);
+    ADD_COMPENSATED(float, sum, lost, dot(vec4(1), squares))
   }
   float inverse = 1.0 / sqrt(total(sum) / elements + p.epsilon);
 #else
-  float sum = 0, product = 0;
+  float sum = 0, lost = 0, product = 0, product_lost = 0;
   for (uint e = own; e < entries; e += step) {
-    sum += dot(vec4(1), load4(partials, base + 2 * e));
-    product += dot(vec4(1), load4(partials, base + 2 * e + 1));
+    ADD_COMPENSATED(float, sum, lost, dot(vec4(1), load4(partials, base + 2 * e)))
+    ADD_COMPENSATED(float, product, product_lost, dot(vec4(1), load4(partials, base + 2 * e + 1)))
   }
   uint sample_entry = gl_WorkGroupID.x * p.blocks * 4;
   float mean = load4(table, sample_entry).x, inverse = load4(table, sample_entry + 3).x;

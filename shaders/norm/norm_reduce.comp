@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "compensated.glsl"
 #include "leaky.glsl"
 #include "norm_walk.glsl"
 #include "random.glsl"
@@ -20,24 +21,20 @@ void main() {
   if (q >= p.strips) return;
   uint cb = gl_WorkGroupID.y, group = gl_WorkGroupID.z;
   uint count = strip_count(q);
-  vec4 sum[4] = vec4[4](vec4(0), vec4(0), vec4(0), vec4(0));
-  vec4 product[4] = sum;
+  vec4 sum = vec4(0), lost = vec4(0), product = vec4(0), product_lost = vec4(0);
   if (count > 0) {
     uvec2 key = kDropout != 0 ? random_key(random[0], random[1], p.stream) : uvec2(0);
     vec4 mean = load4(table, (group * p.blocks + cb) * 4);
     Walk walk = walk_begin(group, cb, q);
-    uint safe = walk.at;
-    for (uint k = 0; k < count; k += 4)
-      for (uint j = 0; j < 4; ++j) {
-        bool inside = k + j < count;
-        vec4 d = load4_or_zero(dy, inside, walk.at);
-        if (kDropout != 0) d *= dropout4(key, walk.at * 4, p.threshold, p.scale);
-        sum[j] += d;
-        product[j] += d * (leaky(load4(x, inside ? walk.at : safe), p.slope) - mean);
-        walk_on(walk);
-      }
+    for (uint k = 0; k < count; ++k) {
+      vec4 d = load4(dy, walk.at);
+      if (kDropout != 0) d *= dropout4(key, walk.at * 4, p.threshold, p.scale);
+      ADD_COMPENSATED(vec4, sum, lost, d)
+      ADD_COMPENSATED(vec4, product, product_lost, d * (leaky(load4(x, walk.at), p.slope) - mean))
+      walk_on(walk);
+    }
   }
   uint out_at = ((group * p.blocks + cb) * p.strips + q) * 2;
-  store4(partials, out_at, (sum[0] + sum[1]) + (sum[2] + sum[3]))
-  store4(partials, out_at + 1, (product[0] + product[1]) + (product[2] + product[3]))
+  store4(partials, out_at, sum)
+  store4(partials, out_at + 1, product)
 }

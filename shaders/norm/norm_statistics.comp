@@ -1,6 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "compensated.glsl"
 #include "leaky.glsl"
 #include "norm_walk.glsl"
 
@@ -20,20 +21,19 @@ void main() {
     Walk walk = walk_begin(group, cb, q);
     uint origin_at = walk.at;
     vec4 origin = leaky(load4(x, origin_at), p.slope);
-    vec4 sum[4] = vec4[4](vec4(0), vec4(0), vec4(0), vec4(0));
-    vec4 sum2[4] = sum;
-    for (uint k = 0; k < count; k += 4)
-      for (uint j = 0; j < 4; ++j) {
-        // Beyond the end, the first item again: it adds exactly 0.
-        vec4 d = leaky(load4(x, k + j < count ? walk.at : origin_at), p.slope) - origin;
-        sum[j] += d;
-        sum2[j] += d * d;
-        walk_on(walk);
-      }
-    vec4 total = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    vec4 total2 = (sum2[0] + sum2[1]) + (sum2[2] + sum2[3]);
-    mean = origin + total / float(count);
-    squares = max(total2 - total * total / float(count), vec4(0));
+    vec4 sum = vec4(0), lost = vec4(0), sum2 = vec4(0), lost2 = vec4(0);
+    for (uint k = 0; k < count; ++k) {
+      vec4 d = leaky(load4(x, walk.at), p.slope) - origin;
+      ADD_COMPENSATED(vec4, sum, lost, d)
+      ADD_COMPENSATED(vec4, sum2, lost2, d * d)
+      walk_on(walk);
+    }
+    vec4 offset = sum / float(count);
+    mean = origin + offset;
+    // What the product rounds off matters where the first item lies far from the mean.
+    precise vec4 product = sum * offset;
+    vec4 rounded_off = fma(sum, offset, -product);
+    squares = max((sum2 - product) - (rounded_off + lost2), vec4(0));
   }
   uint out_at = ((group * p.blocks + cb) * p.strips + q) * 2;
   store4(partials, out_at, mean)

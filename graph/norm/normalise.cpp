@@ -9,7 +9,7 @@ namespace vkopple {
 namespace {
 
 // Strips of a channel block: enough to fill the device, few enough for the second stage. An item costs some 25
-// ns on lavapipe for 8 lanes, so 16 are worth an invocation; 1024 in four partial sums keep float32's digits.
+// ns on lavapipe for 8 lanes, so 16 are worth an invocation; 1024 in a compensated sum keep float32's digits.
 constexpr uint32_t kStripsOnCpu = 256;
 constexpr uint32_t kStripsOnGpu = 512;
 constexpr uint32_t kFewestItems = 16;
@@ -79,7 +79,7 @@ Normalise::Normalise(const Shape& x, int64_t groups, const NormSurround& surroun
 }
 
 uint64_t Normalise::partial_bytes() const {
-  return uint64_t{strips_.groups} * strips_.blocks * strips_.strips * 32;
+  return uint64_t{strips_.groups} * strips_.blocks * strips_.strips * 48;
 }
 
 TensorSpec Normalise::table() const { return row_major({int64_t{strips_.groups} * strips_.blocks * 16}); }

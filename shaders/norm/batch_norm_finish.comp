@@ -6,7 +6,8 @@
 #include "workgroup_sum.glsl"
 
 // Second stage of batch normalisation: a workgroup takes channel block x and its groups one after the other.
-// partials: of norm_statistics. table [group][block][4]: mean, gamma / deviation, beta, 1 / deviation.
+// partials: of norm_statistics. table [group][block][4]: mean, gamma / deviation, shift, 1 / deviation, where the shift is beta
+// less what the mean rounds off.
 // Training moves the running averages by every group's statistics; else the table is made of them.
 layout(constant_id = 1) const uint kTraining = 1;
 READ4(0, partials)
@@ -25,19 +26,28 @@ vec4 running(bool variance) {
   return v;
 }
 
-vec4 mean_of(uint base) {
+// Strip q's mean, as seen from `origin`.
+vec4 from_origin(uint base, uint q, vec4 origin) {
+  return (load4(partials, base + 3 * q) - origin) + load4(partials, base + 3 * q + 2);
+}
+
+// The mean, and in `low` what it rounds off: the distance of later values from the mean needs both.
+vec4 mean_of(uint base, out vec4 low) {
   vec4 origin = load4(partials, base);
   vec4 sum = vec4(0), lost = vec4(0);
   for (uint q = gl_LocalInvocationID.x; q < p.strips; q += gl_WorkGroupSize.x)
-    ADD_COMPENSATED(vec4, sum, lost, float(strip_count(q)) * (load4(partials, base + 2 * q) - origin))
-  return origin + workgroup_sum(sum) / float(p.items);
+    ADD_COMPENSATED(vec4, sum, lost, float(strip_count(q)) * from_origin(base, q, origin))
+  vec4 offset = workgroup_sum(sum) / float(p.items);
+  precise vec4 rounded = origin + offset;
+  low = offset - (rounded - origin);
+  return rounded;
 }
 
 vec4 squares_of(uint base, vec4 mean) {
   vec4 sum = vec4(0), lost = vec4(0);
   for (uint q = gl_LocalInvocationID.x; q < p.strips; q += gl_WorkGroupSize.x) {
-    vec4 d = load4(partials, base + 2 * q) - mean;
-    ADD_COMPENSATED(vec4, sum, lost, load4(partials, base + 2 * q + 1) + float(strip_count(q)) * d * d)
+    vec4 d = from_origin(base, q, mean);
+    ADD_COMPENSATED(vec4, sum, lost, load4(partials, base + 3 * q + 1) + float(strip_count(q)) * d * d)
   }
   return workgroup_sum(sum);
 }
@@ -53,10 +63,10 @@ void main() {
   vec4 average = running(false), average_var = running(true);
   for (uint group = 0; group < p.groups; ++group) {
     uint entry = group * p.blocks + cb;
-    vec4 mean = average, variance = average_var;
+    vec4 mean = average, variance = average_var, low = vec4(0);
     if (kTraining != 0) {
-      mean = mean_of(entry * p.strips * 2);
-      vec4 squares = squares_of(entry * p.strips * 2, mean);
+      mean = mean_of(entry * p.strips * 3, low);
+      vec4 squares = squares_of(entry * p.strips * 3, mean);
       variance = squares / float(p.items);
       average += p.momentum * (mean - average);
       average_var += p.momentum * (squares / float(max(p.items - 1, 1)) - average_var);
@@ -65,7 +75,7 @@ void main() {
       vec4 inverse = 1.0 / sqrt(variance + p.epsilon);
       store4(table, entry * 4, mean)
       store4(table, entry * 4 + 1, g * inverse)
-      store4(table, entry * 4 + 2, b)
+      store4(table, entry * 4 + 2, b - low * g * inverse)
       store4(table, entry * 4 + 3, inverse)
     }
   }

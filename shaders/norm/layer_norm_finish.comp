@@ -25,20 +25,26 @@ float total(float v) { return workgroup_sum(vec4(v, 0, 0, 0)).x; }
 
 void main() {
   uint entries = p.blocks * p.strips;
+#ifdef FORWARD
+  uint base = gl_WorkGroupID.x * entries * 3;
+#else
   uint base = gl_WorkGroupID.x * entries * 2;
+#endif
   uint own = gl_LocalInvocationID.x, step = gl_WorkGroupSize.x;
   float elements = float(p.items) * float(p.channels);
 #ifdef FORWARD
   float origin = load4(partials, base).x;
   float sum = 0, lost = 0;
   for (uint e = own; e < entries; e += step)
-    ADD_COMPENSATED(float, sum, lost, dot(weights(e), load4(partials, base + 2 * e) - origin))
-  float mean = origin + total(sum) / elements;
+    ADD_COMPENSATED(float, sum, lost, dot(weights(e), (load4(partials, base + 3 * e) - origin) + load4(partials, base + 3 * e + 2)))
+  float offset = total(sum) / elements;
+  precise float mean = origin + offset;
+  precise float low = offset - (mean - origin);
   sum = 0;
   lost = 0;
   for (uint e = own; e < entries; e += step) {
-    vec4 d = load4(partials, base + 2 * e) - mean;
-    vec4 squares = weights(e) * d * d + real_lanes(e / p.strips) * load4(partials, base + 2 * e + 1);
+    vec4 d = (load4(partials, base + 3 * e) - mean) + load4(partials, base + 3 * e + 2);
+    vec4 squares = weights(e) * d * d + real_lanes(e / p.strips) * load4(partials, base + 3 * e + 1);
     ADD_COMPENSATED(float, sum, lost, dot(vec4(1), squares))
   }
   float inverse = 1.0 / sqrt(total(sum) / elements + p.epsilon);
@@ -59,7 +65,7 @@ void main() {
 #ifdef FORWARD
     store4(table, entry, vec4(mean))
     store4(table, entry + 1, inverse * lanes)
-    store4(table, entry + 2, vec4(0))
+    store4(table, entry + 2, -low * inverse * lanes)  // what the mean rounds off
     store4(table, entry + 3, vec4(inverse))
 #else
     store4(coefficients, entry, vec4(mean))

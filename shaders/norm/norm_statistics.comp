@@ -6,8 +6,8 @@
 #include "norm_walk.glsl"
 
 // First stage of mean and variance of leaky(x), NC4HW4: invocation q of (group z, channel block y) sums its strip.
-// partials [group][block][strip][2]: the strip's mean, and its sum of squared distances from that mean. Distances are taken from
-// the strip's first item, so that a mean far from 0 costs no digits.
+// partials [group][block][strip][3]: the strip's mean, its sum of squared distances from that mean, and what the mean
+// rounds off. Distances are taken from the strip's first item, so that a mean far from 0 costs no digits.
 READ4(0, x)
 WRITE4(1, partials)
 
@@ -16,7 +16,7 @@ void main() {
   if (q >= p.strips) return;
   uint cb = gl_WorkGroupID.y, group = gl_WorkGroupID.z;
   uint count = strip_count(q);
-  vec4 mean = vec4(0), squares = vec4(0);
+  vec4 mean = vec4(0), squares = vec4(0), mean_low = vec4(0);
   if (count > 0) {
     Walk walk = walk_begin(group, cb, q);
     uint origin_at = walk.at;
@@ -29,13 +29,17 @@ void main() {
       walk_on(walk);
     }
     vec4 offset = sum / float(count);
-    mean = origin + offset;
+    precise vec4 rounded = origin + offset;
+    precise vec4 low = offset - (rounded - origin);
+    mean = rounded;
+    mean_low = low;
     // What the product rounds off matters where the first item lies far from the mean.
     precise vec4 product = sum * offset;
     vec4 rounded_off = fma(sum, offset, -product);
     squares = max((sum2 - product) - (rounded_off + lost2), vec4(0));
   }
-  uint out_at = ((group * p.blocks + cb) * p.strips + q) * 2;
+  uint out_at = ((group * p.blocks + cb) * p.strips + q) * 3;
   store4(partials, out_at, mean)
   store4(partials, out_at + 1, squares)
+  store4(partials, out_at + 2, mean_low)
 }

@@ -43,6 +43,7 @@ struct Caps {
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
   bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
+  bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
 
   bool cpu() const { return type == DeviceType::kCpu; }
   /// Invocations of a workgroup for kernels that treat every element alike.

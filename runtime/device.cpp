@@ -39,6 +39,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
       throw Error("the texel access path needs 64-bit integers in shaders, which " + caps_.name + " lacks");
     caps_.access = *options.access;
   }
+  caps_.exact_sums = options.exact_sums;
   create_logical_device();
   const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;
   pipelines_ = std::make_unique<PipelineSet>(*this, options.use_cache ? folder : std::filesystem::path());

@@ -18,6 +18,7 @@ struct DeviceOptions {
   std::string selector;                ///< as device_selector takes it
   MessageSink on_message;              ///< loads the validation layer and receives what it says
   std::optional<AccessPath> access;    ///< forces an access path (tests run both)
+  bool exact_sums = false;             ///< Caps::exact_sums
   std::filesystem::path cache_folder;  ///< of the pipeline cache; empty: default_cache_folder()
   bool use_cache = true;               ///< false: neither reads nor writes the pipeline cache
 };

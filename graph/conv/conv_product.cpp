@@ -222,10 +222,11 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
                             : choose_uniform_tile(work);
   push.bias = static_cast<int32_t>(packing.weight_vectors());
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
-  recorder.dispatch("conv_product." + std::string(family),
-                    {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4),
-                     static_cast<uint32_t>(tile.pixels), operands.accumulate, straight_vectors(push, tile)},
-                    {operands.in, packed, operands.out}, push, groups_of(push, tile, work.lanes, caps));
+  recorder.dispatch(
+      "conv_product." + std::string(family),
+      {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels),
+       operands.accumulate, straight_vectors(push, tile), caps.exact_sums ? 1U : 0U},
+      {operands.in, packed, operands.out}, push, groups_of(push, tile, work.lanes, caps));
 }
 
 }  // namespace vkopple

@@ -19,6 +19,7 @@ layout(constant_id = 1) const int kOut4 = 1;
 layout(constant_id = 2) const int kPixels = 1;
 layout(constant_id = 3) const uint kAccumulate = 0;  // 1: out += …
 layout(constant_id = 4) const int kIn4 = 0;          // p.in4, for straight code; 0: a loop
+layout(constant_id = 5) const uint kExact = 0;       // 1: what sums and products round off is kept and added at the end
 const int kBlocks = (kOut4 + 1) / 2;                 // of 8 output channels
 const int kHalves = kOut4 < 2 ? 1 : 2;               // vectors of a block
 
@@ -82,6 +83,18 @@ void find_pixels(int tile, int rows, int columns) {
 }
 
 vec4 sums[kPixels][kOut4];
+vec4 lost[kPixels][kOut4];  // with kExact
+
+// sums += s · v, and what that rounds off to `lost`: Knuth's two-sum, and the product's own remainder.
+void add_exactly(int r, int o4, int o, float s, float v) {
+  precise float term = s * v;
+  precise float before = sums[r][o4][o];
+  precise float sum = before + term;
+  precise float added = sum - before;
+  precise float error = (before - (sum - added)) + (term - added);
+  sums[r][o4][o] = sum;
+  lost[r][o4][o] += error + fma(s, v, -term);
+}
 
 #ifdef SHUFFLE
 #define LOAD_WEIGHTS(from) vec4 mine = load4(weights, (from) + int(gl_SubgroupInvocationID & 7u));
@@ -105,7 +118,11 @@ void add_channels(int at[kPixels], int shift, int block, int block_stride) {
       [[unroll]] for (int o = 0; o < 4; ++o)
         [[unroll]] for (int i = 0; i < 4; ++i) {
           float s = WEIGHT(4 * h + o, i);
-          [[unroll]] for (int r = 0; r < kPixels; ++r) sums[r][2 * b + h][o] = fma(s, v[r][i], sums[r][2 * b + h][o]);
+          [[unroll]] for (int r = 0; r < kPixels; ++r)
+            if (kExact != 0)
+              add_exactly(r, 2 * b + h, o, s, v[r][i]);
+            else
+              sums[r][2 * b + h][o] = fma(s, v[r][i], sums[r][2 * b + h][o]);
         }
   }
 }
@@ -152,7 +169,7 @@ void store_sums(int a, int b, int out_block) {
   [[unroll]] for (int o = 0; o < kOut4; ++o)
     if (out_block + o < p.out4)
       [[unroll]] for (int r = 0; r < kPixels; ++r)
-        if (image[r] < p.n) add4(y, at[r] + o * size, sums[r][o], kAccumulate)
+        if (image[r] < p.n) add4(y, at[r] + o * size, kExact != 0 ? sums[r][o] + lost[r][o] : sums[r][o], kAccumulate)
 }
 
 void main() {
@@ -167,7 +184,10 @@ void main() {
   find_pixels(tile, rows, columns);
   [[unroll]] for (int o = 0; o < kOut4; ++o) {
     vec4 start = load4(weights, p.bias + out_block + o);
-    [[unroll]] for (int r = 0; r < kPixels; ++r) sums[r][o] = start;
+    [[unroll]] for (int r = 0; r < kPixels; ++r) {
+      sums[r][o] = start;
+      lost[r][o] = vec4(0);
+    }
   }
   add_taps(a, b, out_block);
   store_sums(a, b, out_block);

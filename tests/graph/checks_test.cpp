@@ -32,6 +32,11 @@ TEST_P(OpCheckTest, MatchesItsReferenceOnTheOtherAccessPath) {
   run_all(*other_access_device(), GetParam());
 }
 
+TEST(ExactSumsTest, ConvolutionsMatchTheirReferences) {
+  for (const OpChecks& checks : all_checks())
+    if (checks.op.starts_with("conv")) run_all(exact_device(), checks);
+}
+
 std::string test_name(const testing::TestParamInfo<OpChecks>& test) { return std::string(test.param.op); }
 
 INSTANTIATE_TEST_SUITE_P(Ops, OpCheckTest, testing::ValuesIn(all_checks()), test_name);

@@ -18,6 +18,11 @@ const Device& test_device() {
   return device;
 }
 
+const Device& exact_device() {
+  static const Device device({.selector = "", .on_message = fail_test, .exact_sums = true});
+  return device;
+}
+
 const Device* other_access_device() {
   static const auto device = []() -> std::unique_ptr<Device> {
     const bool texel = test_device().caps().access == AccessPath::kTexel;

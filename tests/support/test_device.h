@@ -10,6 +10,8 @@ namespace vkopple {
 /// The device that tests share (VKOPPLE_DEVICE chooses it), with the validation layer loaded. Every message of
 /// the layer fails the test that runs at that moment.
 const Device& test_device();
+/// The same device with convolutions that keep what their sums round off.
+const Device& exact_device();
 /// The same device with the other access path; null where it can't have it.
 const Device* other_access_device();
 

@@ -20,10 +20,16 @@ TEST(ParityTest, Rigid) { expect_parity(test_device(), "rigid.safetensors"); }
 
 TEST(ParityTest, WithoutWarpingAndJensenShannon) { expect_parity(test_device(), "nowarp_js.safetensors"); }
 
-TEST(ParityTest, Train) { expect_parity(test_device(), "train.safetensors"); }
+// With batch statistics of few numbers, float32 rounding alone moves some value over LeakyReLU's kink:
+// PyTorch's float32, started from weights moved by one rounding, is over these limits in 9 of 12 trials, plain
+// sums here in 6 of 12. Convolutions that keep what they round off leave the formulas to be compared.
+TEST(ParityTest, TrainWithExactSums) { expect_parity(exact_device(), "train.safetensors"); }
+
+TEST(ParityTest, RigidWithExactSums) { expect_parity(exact_device(), "rigid.safetensors"); }
 
 TEST(ParityTest, RigidOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr) GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr)
+    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
   expect_parity(*other_access_device(), "rigid.safetensors");
 }
 

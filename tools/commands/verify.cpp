@@ -15,6 +15,7 @@ namespace {
 struct Options {
   std::string fixture;
   std::string dump;
+  bool plain_sums = false;
   bool json = false;
   std::string device;
 };
@@ -38,7 +39,7 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
-  const Device device({.selector = options.device});
+  const Device device({.selector = options.device, .exact_sums = !options.plain_sums});
   const ParityReport report = check_parity(device, options.fixture);
   if (!options.dump.empty()) write_safetensors(options.dump, {{"fixture", options.fixture}}, report.computed);
   if (options.json) {
@@ -62,6 +63,10 @@ void add_verify(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("fixture", options->fixture, "Parity fixture (safetensors)")->required();
   command->add_option("--dump", options->dump, "Write what was computed, under the fixture's names");
+  command->add_flag(
+      "--plain-sums", options->plain_sums,
+      "Convolve with training's plain float32 sums. By default their rounding is kept and added back, so that "
+      "what is compared is the formulas: with batch statistics, rounding alone moves LeakyReLU over its kink");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   command->footer("Example: vkopple verify tests/fixtures/rigid.safetensors --dump computed.safetensors");

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "models/perception.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "train/random.h"
+#include "train/resident_memory.h"
 #include "train/training_step.h"
 
 namespace vkopple {
@@ -59,6 +61,11 @@ void initialise(Executor& executor, const std::vector<InitialTensor>& tensors) {
     executor.write(t.value, initial_values(t.initial, t.value.shape().elements(), 1, t.name));
 }
 
+uint64_t growth_since(const std::optional<ResidentMemory>& before) {
+  const auto after = resident_memory();
+  return before && after && after->peak > before->now ? after->peak - before->now : 0;
+}
+
 /// Runs `step` once for warmth and then `repeats` times, and completes the result.
 void time_steps(BenchmarkResult& result, const BenchmarkOptions& options, const std::function<void()>& step) {
   step();
@@ -82,6 +89,7 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
   stage.batch = static_cast<int>(options.batch);
   const Triplets triplets = made_up(config.model, options.batch);
   BenchmarkResult result;
+  const auto memory_before = resident_memory();
   std::unique_ptr<TrainingStep> training;
   uint32_t step = 0;
   const auto run = [&] { training->run(triplets, 1, step++); };
@@ -99,7 +107,10 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
       (executor.forward_flop() + executor.backward_flop()) * 1e-9 / static_cast<double>(options.batch);
   result.peak_device_bytes = executor.total_bytes();
   result.dispatches = executor.dispatches();
-  build(true);  // timestamps cost a little: they get runs of their own
+  result.resident_growth_bytes = growth_since(memory_before);
+  if (!options.profile) return result;
+  training.reset();  // two models at once may not fit
+  build(true);       // timestamps cost a little: they get runs of their own
   run();
   run();
   add_profile(result, training->executor());
@@ -110,6 +121,7 @@ BenchmarkResult benchmark_inference(const Device& device, const Config& config,
                                     const BenchmarkOptions& options) {
   const auto images = noise(options.batch * 3 * config.model.height * config.model.width);
   BenchmarkResult result;
+  const auto memory_before = resident_memory();
   std::unique_ptr<Perception> perception;
   const auto run = [&] { perception->see(images); };
   result.first_step_seconds = seconds_of([&] {
@@ -123,6 +135,7 @@ BenchmarkResult benchmark_inference(const Device& device, const Config& config,
   result.gflop_per_triplet = executor.forward_flop() * 1e-9 / static_cast<double>(options.batch);
   result.peak_device_bytes = executor.total_bytes();
   result.dispatches = executor.dispatches();
+  result.resident_growth_bytes = growth_since(memory_before);
   return result;
 }
 

@@ -12,8 +12,9 @@ class Device;
 
 struct BenchmarkOptions {
   int64_t batch = 4;
-  int repeats = 5;    ///< timed runs, after one that builds pipelines and one that warms up
-  std::string stage;  ///< of training, by name; empty: the last one, which trains everything
+  bool profile = true;  ///< times every op too, in runs of their own; false: BenchmarkResult::by_op stays empty
+  int repeats = 5;      ///< timed runs, after one that builds pipelines and one that warms up
+  std::string stage;    ///< of training, by name; empty: the last one, which trains everything
 };
 
 /// Figures of one benchmark; seconds are wall-clock medians.
@@ -23,6 +24,9 @@ struct BenchmarkResult {
   double gflop_per_triplet =
       0;  ///< of convolutions and products, forward and backward as far as run; an image for inference
   uint64_t peak_device_bytes = 0;
+  /// The process's largest memory during the steps less what it had before the model was built, in bytes; 0
+  /// where the system does not tell. Of a CPU device it is all of a step; a GPU's memory is not in it.
+  uint64_t resident_growth_bytes = 0;
   double first_step_seconds = 0;  ///< building the graph and its pipelines, and the first run
   size_t dispatches = 0;
   std::map<std::string, double> by_op;  ///< seconds of device time by op and pass, as "conv2d.backward"

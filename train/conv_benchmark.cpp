@@ -17,6 +17,7 @@ namespace {
 
 struct Case {
   std::string name;
+  TimedConvolution shape;
   std::shared_ptr<const Op> op;
   Shape x;
   Shape w;
@@ -25,6 +26,7 @@ struct Case {
 Case plain(int64_t batch, int64_t ci, int64_t size, int64_t co, int64_t kernel, int64_t stride) {
   return {fmt::format("{}x{}{}  {},{},{},{} -> {}", kernel, kernel, stride == 2 ? " stride 2" : "", batch, ci,
                       size, size, co),
+          {false, kernel, stride, batch, ci, size, co},
           std::make_shared<Conv2d>(Conv2dOptions{.stride = stride, .padding = kernel / 2}, true),
           {batch, ci, size, size},
           {co, ci, kernel, kernel}};
@@ -32,6 +34,7 @@ Case plain(int64_t batch, int64_t ci, int64_t size, int64_t co, int64_t kernel, 
 
 Case transposed(int64_t batch, int64_t ci, int64_t size, int64_t co, int64_t kernel) {
   return {fmt::format("transposed {}x{}  {},{},{},{} -> {}", kernel, kernel, batch, ci, size, size, co),
+          {true, kernel, 2, batch, ci, size, co},
           std::make_shared<ConvTranspose2d>(ConvTranspose2dOptions{}, true),
           {batch, ci, size, size},
           {ci, co, kernel, kernel}};
@@ -56,7 +59,7 @@ class Timing {
 
   ConvTiming run() {
     const double flop = needs_.forward_flop * 1e-9;
-    ConvTiming timing{.label = case_.name};
+    ConvTiming timing{.label = case_.name, .shape = case_.shape};
     timing.forward = flop / best([&](Recorder& r) { case_.op->record_forward(r, {x_, y_, {}, scratch_}); });
     timing.data_gradient = flop / best([&](Recorder& r) { backward(r, {true, false, false}); });
     timing.weight_gradient = flop / best([&](Recorder& r) { backward(r, {false, true, true}); });

@@ -35,6 +35,7 @@ void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
   out["triplets_per_second"] = r.triplets_per_second;
   out["gflop_per_triplet"] = r.gflop_per_triplet;
   out["peak_device_bytes"] = r.peak_device_bytes;
+  out["resident_growth_bytes"] = r.resident_growth_bytes;
   out["first_step_seconds"] = r.first_step_seconds;
   out["dispatches"] = r.dispatches;
   out["by_op"] = r.by_op;
@@ -70,6 +71,13 @@ void run(const Options& options) {
     const auto timings = benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats);
     for (const ConvTiming& t : timings)
       out["convolutions"].push_back({{"shape", t.label},
+                                     {"transposed", t.shape.transposed},
+                                     {"kernel", t.shape.kernel},
+                                     {"stride", t.shape.stride},
+                                     {"batch", t.shape.batch},
+                                     {"in_channels", t.shape.in_channels},
+                                     {"size", t.shape.size},
+                                     {"out_channels", t.shape.out_channels},
                                      {"forward_gflops", t.forward},
                                      {"data_gradient_gflops", t.data_gradient},
                                      {"weight_gradient_gflops", t.weight_gradient}});
@@ -101,6 +109,8 @@ void add_bench(CLI::App& app) {
   command->add_option("--repeats", options->benchmark.repeats, "Timed runs, of which the median counts")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command->add_flag("!--no-profile", options->benchmark.profile,
+                    "Leave out the times of single ops, which take runs of their own");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   command->footer("Example: vkopple bench step --preset small --batch 4 --json");

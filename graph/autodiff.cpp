@@ -104,6 +104,11 @@ class Walk {
 
 }  // namespace
 
+double backward_flop(const Node& node, const BackwardStep& step, double full) {
+  const bool product = node.inputs.size() >= 2 && node.op->differentiable(0) && node.op->differentiable(1);
+  return product && (step.wants[0] == 0) != (step.wants[1] == 0) ? full / 2 : full;
+}
+
 BackwardPlan plan_backward(Graph& graph, Value loss, const std::vector<std::string>& trained) {
   for (const auto& name : trained) graph.gradient(name);
   return Walk(graph, trained).run(loss);

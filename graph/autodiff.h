@@ -27,4 +27,8 @@ struct BackwardPlan {
 /// no trained group or a node reads the same tensor twice.
 BackwardPlan plan_backward(Graph& graph, Value loss, const std::vector<std::string>& trained);
 
+/// Operations of a backward step out of the `full` that its op's Needs state for all gradients: of a product of
+/// inputs 0 and 1 of which only one wants its gradient, half.
+double backward_flop(const Node& node, const BackwardStep& step, double full);
+
 }  // namespace vkopple

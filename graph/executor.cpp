@@ -158,7 +158,8 @@ Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
     needs_.push_back(node.op->needs(specs, device.caps()));
     forward_flop_ += needs_.back().forward_flop;
   }
-  for (const auto& step : backward_plan_.steps) backward_flop_ += needs_[step.node].backward_flop;
+  for (const auto& step : backward_plan_.steps)
+    backward_flop_ += vkopple::backward_flop(graph.nodes()[step.node], step, needs_[step.node].backward_flop);
   Layouter(*this).run();
   record_forward(options.profile);
   if (loss_) record_backward(options.profile);

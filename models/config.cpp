@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 
+#include "models/config_override.h"
 #include "models/presets.h"
 #include "models/strict_json.h"
 #include "runtime/error.h"
@@ -31,9 +32,10 @@ std::string read_small_file(const std::string& path) {
 
 }  // namespace
 
-Config Config::parse(std::string_view text, std::string_view origin) {
-  const nlohmann::json value = parse_strict_json(text, origin);
-  JsonObject root(value, std::string(origin), "");
+Config Config::parse(std::string_view text, std::string_view origin, std::span<const std::string> overrides) {
+  nlohmann::json value = parse_strict_json(text, origin);
+  for (const std::string& assignment : overrides) override_value(value, assignment);
+  JsonObject root(value, fmt::format("{}{}", origin, overrides.empty() ? "" : " with --set"), "");
   Config c;
   c.model = read_model_config(root.object("model"));
   c.rooms = read_rooms_config(root.object("rooms"), RoomsConfig{});
@@ -42,14 +44,14 @@ Config Config::parse(std::string_view text, std::string_view origin) {
   return c;
 }
 
-Config Config::load(const std::string& path_or_preset) {
+Config Config::load(const std::string& path_or_preset, std::span<const std::string> overrides) {
   if (const auto preset = find_preset(path_or_preset))
-    return parse(*preset, fmt::format("preset {}", path_or_preset));
+    return parse(*preset, fmt::format("preset {}", path_or_preset), overrides);
   if (!std::filesystem::exists(path_or_preset)) {
     throw UsageError(fmt::format("{}: no such file, nor a preset; the presets are {}", path_or_preset,
                                  fmt::join(preset_names(), ", ")));
   }
-  return parse(read_small_file(path_or_preset), path_or_preset);
+  return parse(read_small_file(path_or_preset), path_or_preset, overrides);
 }
 
 std::string Config::to_json() const {

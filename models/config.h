@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +21,13 @@ struct Config {
 
   bool operator==(const Config&) const = default;
 
-  /// `origin` opens every message. Throws Error.
-  static Config parse(std::string_view json, std::string_view origin);
+  /// `origin` opens every message. `overrides` take the place of what the text has (config_override.h). Throws
+  /// Error, and UsageError for an override that is none.
+  static Config parse(std::string_view json, std::string_view origin,
+                      std::span<const std::string> overrides = {});
   /// A preset's name, or else a file's path. Throws UsageError where it is neither, Error for what is wrong in
   /// the file.
-  static Config load(const std::string& path_or_preset);
+  static Config load(const std::string& path_or_preset, std::span<const std::string> overrides = {});
   /// Complete and exact: parse(to_json()) gives the same configuration, bit for bit.
   std::string to_json() const;
 

@@ -16,12 +16,12 @@ constexpr size_t kLevels = 6;
 
 }  // namespace
 
-Value depth_net(LayerFactory& layers, const ModelConfig& config, Value images, int64_t frames) {
+Value depth_net(LayerFactory& layers, const ModelConfig& config, Value images) {
   const Scope scope(layers.graph(), "depth");
   const int64_t w = config.depth_width;
   const std::array<int64_t, kLevels + 1> channels{w, 2 * w, 4 * w, 8 * w, 16 * w, 16 * w, 16 * w};
   const Norm norm = [&](Value x, const std::string& name) {
-    return layers.act_batch_norm(x, name, kEpsilon, frames);
+    return layers.act_batch_norm(x, name, kEpsilon, 1);
   };
   const Norm none = [&](Value x, const std::string&) { return layers.act(x); };
 

@@ -5,8 +5,8 @@
 
 namespace vkopple {
 
-/// The depth network (docs/model.md §2.1): images, NC4HW4 (F·B, 3, H, W) of F frames one after the other, to
-/// depth in scene units, row-major (F·B, 1, H, W). `frames`: F; each has batch statistics of its own.
-Value depth_net(LayerFactory& layers, const ModelConfig& config, Value images, int64_t frames);
+/// The depth network (docs/model.md §2.1): images, NC4HW4 (B, 3, H, W), to depth in scene units,
+/// row-major (B, 1, H, W).
+Value depth_net(LayerFactory& layers, const ModelConfig& config, Value images);
 
 }  // namespace vkopple

@@ -16,8 +16,9 @@ constexpr int64_t kBatch = 3;
 constexpr double kMove = 3e-4;
 constexpr double kLimit = 0.02;
 
-ModelConfig small_model() {
+ModelConfig small_model(StatisticsFrames frames) {
   ModelConfig config;
+  config.statistics_frames = frames;
   config.height = 32;
   config.width = 32;
   config.depth_width = 4;
@@ -50,8 +51,8 @@ Triplets made_up(const ModelConfig& config) {
 
 class ModelCheck {
  public:
-  explicit ModelCheck(const Device& device)
-      : config_(small_model()),
+  ModelCheck(const Device& device, StatisticsFrames frames)
+      : config_(small_model(frames)),
         model_(graph_, config_,
                {.batch = kBatch, .training = false, .max_tensor_bytes = device.caps().max_tensor_bytes()}),
         executor_(device, graph_, {.loss = model_.loss(), .trained = model_.groups()}) {
@@ -124,6 +125,8 @@ class ModelCheck {
 
 bool DirectionalCheck::passed() const { return std::abs(analytic - numeric) <= limit; }
 
-std::vector<DirectionalCheck> check_model(const Device& device) { return ModelCheck(device).run(); }
+std::vector<DirectionalCheck> check_model(const Device& device, StatisticsFrames frames) {
+  return ModelCheck(device, frames).run();
+}
 
 }  // namespace vkopple

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "models/model_config.h"
+
 namespace vkopple {
 
 class Device;
@@ -22,6 +24,6 @@ struct DirectionalCheck {
 /// are put together. Batch norm uses running averages: over the three numbers of a 1×1 map, batch statistics
 /// bend the loss more within a few float32 spacings than differences can follow (the training fixture pins them
 /// instead).
-std::vector<DirectionalCheck> check_model(const Device& device);
+std::vector<DirectionalCheck> check_model(const Device& device, StatisticsFrames frames);
 
 }  // namespace vkopple

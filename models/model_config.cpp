@@ -33,6 +33,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.boolean("warp", c.warp);
   object.boolean("relaxed", c.relaxed);
   object.choice("pose_loss", c.pose_loss, kPoseLossNames);
+  object.choice("statistics_frames", c.statistics_frames, kStatisticsFramesNames);
   object.numbers("dropout", c.dropout, 0, 0.95);
   object.finish();
   if (c.identity > c.code) {
@@ -62,6 +63,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"warp", c.warp},
           {"relaxed", c.relaxed},
           {"pose_loss", kPoseLossNames[static_cast<std::size_t>(c.pose_loss)]},
+          {"statistics_frames", kStatisticsFramesNames[static_cast<std::size_t>(c.statistics_frames)]},
           {"dropout", c.dropout}};
 }
 

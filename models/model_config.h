@@ -14,6 +14,11 @@ namespace vkopple {
 enum class PoseLossKind { kKl, kJs };
 inline constexpr std::array<std::string_view, 2> kPoseLossNames{"kl", "js"};
 
+/// Which frames pass the depth network and the mask decoder in a training step (docs/model.md §6): all, for
+/// their part in batch norm's running averages, or the second alone, whose depth and masks the losses read.
+enum class StatisticsFrames { kAll, kSecond };
+inline constexpr std::array<std::string_view, 2> kStatisticsFramesNames{"all", "second"};
+
 /// What fixes the model's shapes and formulas. The defaults are the published model's. Angles in radians,
 /// lengths in scene units.
 struct ModelConfig {
@@ -35,6 +40,7 @@ struct ModelConfig {
   bool warp = true;      ///< false: only the imagined image is used (an ablation)
   bool relaxed = false;  ///< true: learned motion; refused, it is not built yet
   PoseLossKind pose_loss = PoseLossKind::kKl;
+  StatisticsFrames statistics_frames = StatisticsFrames::kAll;
   std::array<double, 3> dropout{0.05, 0.05, 0.0005};  ///< depth, object, imagination network
 
   bool operator==(const ModelConfig&) const = default;

@@ -63,8 +63,8 @@ std::vector<Value> encode(LayerFactory& layers, const ModelConfig& config, Value
   return skips;
 }
 
-/// (F·B, C, h, w) → slots' raw numbers (F, B, K, R).
-Value read_slots(LayerFactory& layers, const ModelConfig& config, Value top, int64_t frames) {
+/// (N, C, h, w) → slots' raw numbers (N, K, R).
+Value read_slots(LayerFactory& layers, const ModelConfig& config, Value top) {
   const Scope scope(layers.graph(), "slots");
   const int64_t samples = top.shape()[0];
   const int64_t features = top.shape().product(1, 4);
@@ -79,21 +79,20 @@ Value read_slots(LayerFactory& layers, const ModelConfig& config, Value top, int
   const Value b_hh = layers.parameter("rnn.bias_hh_l0", {4 * hidden}, Initial::framework(hidden));
   const Value h = leaky_relu(lstm(x, w_ih, w_hh, b_ih, b_hh, config.slots), kSlope);
   const int64_t numbers = 3 + config.bins + config.code;
-  const Value raw = layers.linear(h, "lin.1", numbers, Initial::framework(hidden));
-  return layers.graph().reshape(raw, row_major({frames, samples / frames, config.slots, numbers}));
+  return layers.linear(h, "lin.1", numbers, Initial::framework(hidden));
 }
 
-/// Mask logits (F·K'·B, 1, H, W), row-major, of codes (F, K', B, code); samples are ordered frame, slot, image.
+/// Mask logits (K'·B, 1, H, W), row-major, of codes (K', B, code); samples are ordered slot, image.
 Value decode_masks(LayerFactory& layers, const ModelConfig& config, Value codes,
                    const std::vector<Value>& skips) {
   Graph& graph = layers.graph();
   const auto channels = channels_of(config);
   const Shape& top = skips.back().shape();
-  const int64_t calls = codes.shape()[0] * codes.shape()[1];
-  const int64_t batch = codes.shape()[2];
-  const int64_t samples = calls * batch;
+  const int64_t slots = codes.shape()[0];
+  const int64_t batch = codes.shape()[1];
+  const int64_t samples = slots * batch;
   const Norm norm = [&](Value x, const std::string& name) {
-    return layers.act_batch_norm(x, name, kDecoderEpsilon, calls);
+    return layers.act_batch_norm(x, name, kDecoderEpsilon, slots);
   };
   const Value flat = graph.reshape(codes, row_major({samples, config.code}));
   const Value seed = leaky_relu(
@@ -106,36 +105,72 @@ Value decode_masks(LayerFactory& layers, const ModelConfig& config, Value codes,
   return to_row_major(layers.out_conv(x, "outc_att.conv", 1, Initial::kaiming_normal(w * 9, 1)));
 }
 
-/// All slots in one call where the device binds tensors that large, else one after the other.
-Value mask_logits(LayerFactory& layers, const ModelConfig& config, Value raw, const std::vector<Value>& skips,
-                  int64_t frames) {
+/// Whether the device binds the network's largest tensor for so many samples.
+bool fits(const LayerFactory& layers, const ModelConfig& config, int64_t samples) {
+  return channels4({samples, config.object_width, config.height, config.width}).bytes() <=
+         layers.options().max_tensor_bytes;
+}
+
+/// One frame's mask logits (K, B, H, W) from its raw numbers (B, K, R) and skips: all slots in one call where
+/// they fit, else one after the other.
+Value mask_logits(LayerFactory& layers, const ModelConfig& config, Value raw, const std::vector<Value>& skips) {
   const Scope scope(layers.graph(), "masks");
-  const int64_t batch = skips[0].shape()[0] / frames;
-  const Value codes = permute(slice(raw, 3, 3 + config.bins, config.code), {0, 2, 1, 3});
+  const int64_t batch = raw.shape()[0];
+  const Value codes = permute(slice(raw, 2, 3 + config.bins, config.code), {1, 0, 2});
   Value logits;
-  if (frames > 1 ||
-      object_net_bytes(config, frames * config.slots * batch) <= layers.options().max_tensor_bytes) {
+  if (fits(layers, config, config.slots * batch)) {
     logits = decode_masks(layers, config, codes, skips);
   } else {
     std::vector<Value> slots;
     for (int64_t k = 0; k < config.slots; ++k)
-      slots.push_back(decode_masks(layers, config, slice(codes, 1, k, 1), skips));
+      slots.push_back(decode_masks(layers, config, take_outer(codes, k, 1), skips));
     logits = concat(slots, 0);
   }
-  return layers.graph().reshape(logits, row_major({frames, config.slots, batch, config.height, config.width}));
+  return layers.graph().reshape(logits, row_major({config.slots, batch, config.height, config.width}));
+}
+
+/// Frames encoded in one call, taken apart again.
+struct EncodedFrame {
+  std::vector<Value> skips;
+  Value raw;  ///< (B, K, R)
+};
+
+std::vector<EncodedFrame> encode_frames(LayerFactory& layers, const ModelConfig& config, Value images,
+                                        int64_t frames) {
+  const auto skips = encode(layers, config, images, frames);
+  const Value raw = read_slots(layers, config, skips.back());
+  const int64_t batch = images.shape()[0] / frames;
+  std::vector<EncodedFrame> apart(static_cast<size_t>(frames));
+  for (int64_t f = 0; f < frames; ++f) {
+    EncodedFrame& frame = apart[static_cast<size_t>(f)];
+    for (const Value& skip : skips) frame.skips.push_back(take_outer(skip, f * batch, batch));
+    frame.raw = take_outer(raw, f * batch, batch);
+  }
+  return apart;
 }
 
 }  // namespace
 
-uint64_t object_net_bytes(const ModelConfig& config, int64_t samples) {
-  return channels4({samples, config.object_width, config.height, config.width}).bytes();
-}
-
-ObjectOutputs object_net(LayerFactory& layers, const ModelConfig& config, Value images, int64_t frames) {
+std::vector<ObjectOutputs> object_net(LayerFactory& layers, const ModelConfig& config, Value images,
+                                      const std::vector<bool>& masks) {
   const Scope scope(layers.graph(), "object");
-  const auto skips = encode(layers, config, images, frames);
-  const Value raw = read_slots(layers, config, skips.back(), frames);
-  return {.raw = raw, .mask_logits = mask_logits(layers, config, raw, skips, frames)};
+  const auto frames = static_cast<int64_t>(masks.size());
+  const int64_t batch = images.shape()[0] / frames;
+  std::vector<EncodedFrame> encoded;
+  if (fits(layers, config, frames * batch)) {
+    encoded = encode_frames(layers, config, images, frames);
+  } else {
+    for (int64_t f = 0; f < frames; ++f)
+      encoded.push_back(encode_frames(layers, config, take_outer(images, f * batch, batch), 1).front());
+  }
+  std::vector<ObjectOutputs> outputs;
+  for (size_t f = 0; f < masks.size(); ++f) {
+    const EncodedFrame& frame = encoded[f];
+    outputs.push_back(
+        {.raw = frame.raw,
+         .mask_logits = masks[f] ? mask_logits(layers, config, frame.raw, frame.skips) : Value{}});
+  }
+  return outputs;
 }
 
 }  // namespace vkopple

@@ -1,21 +1,22 @@
 #pragma once
 
+#include <vector>
+
 #include "models/layers.h"
 #include "models/model_config.h"
 
 namespace vkopple {
 
-/// What the object network says of F frames of B images each; row-major.
+/// What the object network says of one frame of B images; row-major.
 struct ObjectOutputs {
-  Value raw;          ///< (F, B, K, 3 + bins + code), the slots' raw numbers
-  Value mask_logits;  ///< (F, K, B, H, W), the background's is 0
+  Value raw;          ///< (B, K, 3 + bins + code), the slots' raw numbers
+  Value mask_logits;  ///< (K, B, H, W), the background's is 0; empty where masks weren't asked for
 };
 
 /// The object-extraction network (docs/model.md §2.2): images NC4HW4 (F·B, 3, H, W), frame after frame. Each
-/// frame, and in the mask decoder each frame and slot, has batch statistics of its own, in that order.
-ObjectOutputs object_net(LayerFactory& layers, const ModelConfig& config, Value images, int64_t frames);
-
-/// Bytes of the network's largest tensor for so many samples (F·K·B in the mask decoder).
-uint64_t object_net_bytes(const ModelConfig& config, int64_t samples);
-
+/// frame, and in the mask decoder each slot of it, has batch statistics of its own, in that order. Frames with
+/// `masks` pass the decoder, each in a call of its own: backward goes through none but those that the loss
+/// needs.
+std::vector<ObjectOutputs> object_net(LayerFactory& layers, const ModelConfig& config, Value images,
+                                      const std::vector<bool>& masks);
 }  // namespace vkopple

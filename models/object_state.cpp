@@ -22,7 +22,7 @@ ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits
   state.log_pose = softmax(slice(raw, 2, 3, config.bins), 2, true);
   state.code = slice(raw, 2, 3 + config.bins, config.code);
   state.mask_logits = mask_logits;
-  state.masks = slot_masks(mask_logits);
+  if (mask_logits) state.masks = slot_masks(mask_logits);
   return state;
 }
 

@@ -10,11 +10,11 @@ struct ObjectState {
   Value location;     ///< (B, K, 3), camera coordinates
   Value log_pose;     ///< (B, K, bins), log probabilities of yaw
   Value code;         ///< (B, K, code)
-  Value mask_logits;  ///< (K, B, H, W)
-  Value masks;        ///< (B, K+1, H, W), background last
+  Value mask_logits;  ///< (K, B, H, W); empty where the mask decoder did not run
+  Value masks;        ///< (B, K+1, H, W), background last; likewise
 };
 
-/// raw: (B, K, 3 + bins + code); mask_logits: (K, B, H, W).
+/// raw: (B, K, 3 + bins + code); mask_logits: (K, B, H, W), or empty.
 ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits);
 
 /// How the objects of frame b are those of frame a (§3).

@@ -73,7 +73,7 @@ LayerFactory& Opple::factory(const std::string& group) {
 
 /// The depth network alone: the warped image, and where nothing lands the frame before.
 void Opple::build_background_only() {
-  const Value depth = depth_net(factory("depth"), config_, to_channels4(image2_), 1);
+  const Value depth = depth_net(factory("depth"), config_, to_channels4(image2_));
   const Value points = back_project(depth, as_float(config_.fov));
   const Value moved = move_background(points, camera_.m23);
   Graph& g = *graph_;
@@ -89,34 +89,37 @@ void Opple::build_background_only() {
   for (const auto& [name, value] : losses_) g.keep("loss/" + name, value);
 }
 
-std::vector<ObjectState> Opple::see_objects(Value images4) {
-  LayerFactory& layers = factory("object");
+/// Which of the three frames pass depth network and mask decoder.
+std::vector<bool> Opple::seen_fully() const {
+  const bool all = config_.statistics_frames == StatisticsFrames::kAll;
+  return {all, true, all};
+}
+
+/// Frame 2's depth. The other frames pass the network for their part in its running averages alone, in calls of
+/// their own, so that backward leaves them out.
+Value Opple::see_depth(Value images4) {
   const int64_t b = options_.batch;
-  std::vector<ObjectState> states;
-  const auto add_states = [&](const ObjectOutputs& out, int64_t frames) {
-    const Shape& raw = out.raw.shape();
-    const Shape& logits = out.mask_logits.shape();
-    for (int64_t f = 0; f < frames; ++f)
-      states.push_back(object_state(
-          config_, graph_->reshape(take_outer(out.raw, f, 1), row_major({b, raw[2], raw[3]})),
-          graph_->reshape(take_outer(out.mask_logits, f, 1), row_major({logits[1], b, logits[3], logits[4]}))));
-  };
-  if (object_net_bytes(config_, kFrames * config_.slots * b) <= options_.max_tensor_bytes) {
-    add_states(object_net(layers, config_, images4, kFrames), kFrames);
-  } else {
-    for (int64_t f = 0; f < kFrames; ++f)
-      add_states(object_net(layers, config_, take_outer(images4, f * b, b), 1), 1);
+  const auto frames = seen_fully();
+  Value depth;
+  for (int64_t f = 0; f < kFrames; ++f) {
+    if (!frames[static_cast<size_t>(f)]) continue;
+    const Value seen = depth_net(factory("depth"), config_, take_outer(images4, f * b, b));
+    if (f == 1) depth = seen;
   }
+  return depth;
+}
+
+std::vector<ObjectState> Opple::see_objects(Value images4) {
+  std::vector<ObjectState> states;
+  for (const ObjectOutputs& out : object_net(factory("object"), config_, images4, seen_fully()))
+    states.push_back(object_state(config_, out.raw, out.mask_logits));
   return states;
 }
 
 void Opple::build_all() {
-  const int64_t b = options_.batch;
   const float fov = as_float(config_.fov);
   const Value images4 = to_channels4(images_);
-  // Frames 1 and 3 pass the depth network for their part in its running averages alone.
-  const Value depths = depth_net(factory("depth"), config_, images4, kFrames);
-  const Value depth = take_outer(depths, b, b);
+  const Value depth = see_depth(images4);
   const auto o = see_objects(images4);
   const ObjectMotion motion = object_motion(config_, o[0], o[1], camera_);
 
@@ -186,6 +189,7 @@ void Opple::keep_objects(const std::string& name, const ObjectState& state) {
   keep(name + ".location", state.location);
   keep(name + ".log_pose", state.log_pose);
   keep(name + ".code", state.code);
+  if (!state.masks) return;
   keep(name + ".mask_logits", state.mask_logits);
   keep(name + ".masks", state.masks);
 }

@@ -18,18 +18,14 @@ Perception::Perception(const Device& device, const ModelConfig& config, std::sha
   images_ = graph_.input("images", row_major({options.batch, 3, config.height, config.width}));
   const Value images4 = to_channels4(images_);
   LayerFactory depth(graph_, network_options(config, "depth", false, {}, largest));
-  depth_ = depth_net(depth, config, images4, 1);
+  depth_ = depth_net(depth, config, images4);
   use(depth);
   graph_.keep("depth", depth_);
   if (options.objects) {
     LayerFactory layers(graph_, network_options(config, "object", false, {}, largest));
-    const ObjectOutputs out = object_net(layers, config, images4, 1);
+    const ObjectOutputs out = object_net(layers, config, images4, {true}).front();
     use(layers);
-    const Shape& raw = out.raw.shape();
-    const Shape& logits = out.mask_logits.shape();
-    objects_ =
-        object_state(config, graph_.reshape(out.raw, row_major({raw[1], raw[2], raw[3]})),
-                     graph_.reshape(out.mask_logits, row_major({logits[1], logits[2], logits[3], logits[4]})));
+    objects_ = object_state(config, out.raw, out.mask_logits);
     graph_.keep("masks", objects_.masks);
     graph_.keep("location", objects_.location);
     graph_.keep("log_pose", objects_.log_pose);

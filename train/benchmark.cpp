@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "models/authors_cost.h"
 #include "models/perception.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
@@ -105,6 +106,8 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
   const Executor& executor = training->executor();
   result.gflop_per_triplet =
       (executor.forward_flop() + executor.backward_flop()) * 1e-9 / static_cast<double>(options.batch);
+  if (!training->model().options().background_only)
+    result.authors_gflop_per_triplet = authors_flop(config.model) * 1e-9;
   result.peak_device_bytes = executor.total_bytes();
   result.dispatches = executor.dispatches();
   result.resident_growth_bytes = growth_since(memory_before);

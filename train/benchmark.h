@@ -23,6 +23,8 @@ struct BenchmarkResult {
   double triplets_per_second = 0;  ///< images a second for inference
   double gflop_per_triplet =
       0;  ///< of convolutions and products, forward and backward as far as run; an image for inference
+  double authors_gflop_per_triplet =
+      0;  ///< the same of the graph that the authors run (models/authors_cost.h); 0 where only a part is timed
   uint64_t peak_device_bytes = 0;
   /// The process's largest memory during the steps less what it had before the model was built, in bytes; 0
   /// where the system does not tell. Of a CPU device it is all of a step; a GPU's memory is not in it.

@@ -14,7 +14,8 @@ constexpr int64_t kFrames = 3;
 
 }  // namespace
 
-ModelLayout::ModelLayout(const ModelConfig& config) : slots_(config.slots) {
+ModelLayout::ModelLayout(const ModelConfig& config)
+    : slots_(config.slots), frames_seen_(config.statistics_frames == StatisticsFrames::kAll ? kFrames : 1) {
   Graph graph;
   const Opple model(graph, config, {.batch = 1, .training = true});
   add_weights(graph, model);
@@ -53,9 +54,11 @@ void ModelLayout::add_optimiser(Graph& graph, const std::string& network) {
 }
 
 int64_t ModelLayout::calls_in_a_step(const std::string& counter, bool background_only) const {
-  if (background_only) return counter.starts_with("depth_model.") ? 1 : 0;
+  const bool depth = counter.starts_with("depth_model.");
+  if (background_only) return depth ? 1 : 0;
   const bool decoder = counter.find("_att.") != std::string::npos;
-  return decoder ? kFrames * slots_ : kFrames;
+  if (decoder) return frames_seen_ * slots_;
+  return depth ? frames_seen_ : kFrames;
 }
 
 }  // namespace vkopple

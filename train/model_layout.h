@@ -49,6 +49,7 @@ class ModelLayout {
   void add_optimiser(Graph& graph, const std::string& network);
 
   int64_t slots_;
+  int64_t frames_seen_;  ///< that pass depth network and mask decoder in a step of everything
   std::vector<LayoutEntry> weights_;
   std::vector<LayoutEntry> optimiser_;
   std::vector<std::string> batch_counters_;

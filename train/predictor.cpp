@@ -15,10 +15,16 @@ OppleOptions options_for(const Device& device) {
   return {.batch = 1, .keep_stages = true, .max_tensor_bytes = device.caps().max_tensor_bytes()};
 }
 
+/// Running averages stay as they are, so no frame need pass a network for their sake.
+ModelConfig without_statistics(ModelConfig config) {
+  config.statistics_frames = StatisticsFrames::kSecond;
+  return config;
+}
+
 }  // namespace
 
 Predictor::Predictor(const Device& device, const ModelConfig& config, std::shared_ptr<GroupStore> groups)
-    : model_(graph_, config, options_for(device)),
+    : model_(graph_, without_statistics(config), options_for(device)),
       executor_(std::make_unique<Executor>(device, graph_, ExecutorOptions{.groups = std::move(groups)})) {
   model_.feed_constants(*executor_);
 }

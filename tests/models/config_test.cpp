@@ -44,6 +44,12 @@ TEST(Config, EveryPresetRoundTripsExactly) {
   }
 }
 
+TEST(Config, StatisticsOfTheSecondFrameAloneAreAChoice) {
+  EXPECT_EQ(Config::load("full").model.statistics_frames, StatisticsFrames::kAll);
+  for (const char* preset : {"small", "tiny"})
+    EXPECT_EQ(Config::load(preset).model.statistics_frames, StatisticsFrames::kSecond) << preset;
+}
+
 TEST(Config, UnroundNumbersRoundTrip) {
   Config c;
   c.model.fov = 0.1 + 0.2;
@@ -158,6 +164,64 @@ TEST(Config, LoadTellsPresetsFromFiles) {
   EXPECT_THROW(Config::load(path), Error);
   std::filesystem::remove(path);
   EXPECT_THROW(Config::load(testing::TempDir()), Error);
+}
+
+Config with(const std::vector<std::string>& overrides) { return Config::load("small", overrides); }
+
+/// The message with which overrides are refused as wrong use.
+std::string wrong_use(const std::string& assignment) {
+  try {
+    with({assignment});
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "accepted: " << assignment;
+  return {};
+}
+
+TEST(Config, OverridesReplaceSingleValues) {
+  const Config c = with({"model.statistics_frames=all", "model.reg=0.25", "model.dropout=[0,0,0.5]",
+                         "training.stages[0].steps=7", "training.clip.depth=1e-3", "rooms.speed=0.1"});
+  Config expected = Config::load("small");
+  expected.model.statistics_frames = StatisticsFrames::kAll;
+  expected.model.reg = 0.25;
+  expected.model.dropout = {0, 0, 0.5};
+  expected.training.stages[0].steps = 7;
+  expected.training.clip.depth = 1e-3;
+  expected.rooms.speed = 0.1;
+  expected.training.stages[1].rooms.speed = 0.1;  // it takes over what the rooms say
+  EXPECT_EQ(c, expected) << c.to_json();
+  EXPECT_EQ(with({"model.slots=2", "model.slots=4"}).model.slots, 4);
+  EXPECT_EQ(Config::parse("{}", "x", std::vector<std::string>{"model.height=32"}).model.height, 32);
+}
+
+TEST(Config, OverridesAreReadStrictly) {
+  const auto refused = [](const std::string& assignment) -> std::string {
+    try {
+      with({assignment});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refused("model.statistics_frames=first"),
+            "preset small with --set: model.statistics_frames is \"first\"; give one of all, second");
+  EXPECT_NE(refused("model.hight=3").find("model.hight is no key"), std::string::npos);
+  EXPECT_NE(refused("trainings.batch=3").find("trainings is no key"), std::string::npos);
+  EXPECT_NE(refused("model.height=3x").find("model.height is \"3x\""), std::string::npos);
+  EXPECT_NE(refused("model=3").find("give an object"), std::string::npos);
+  EXPECT_NE(refused("model={\"slots\":2,\"slots\":3}").find("appears twice"), std::string::npos);
+}
+
+TEST(Config, OverridesThatAreNoneAreWrongUse) {
+  EXPECT_EQ(wrong_use("model.reg"), "--set model.reg: give KEY=VALUE, as model.reg=0.5");
+  for (const char* key :
+       {"", ".", "model.", ".model", "model..reg", "model reg", "training.stages[", "training.stages[]",
+        "training.stages[0", "training.stages[-1]", "training.stages[x].steps", "model[\"reg\"]"})
+    EXPECT_NE(wrong_use(std::string(key) + "=1").find("is no key"), std::string::npos) << key;
+  EXPECT_NE(wrong_use("training.stages[2].steps=1").find("its list has 2"), std::string::npos);
+  EXPECT_NE(wrong_use("model.height[0]=1").find("its list has 0"), std::string::npos);
+  EXPECT_NE(wrong_use("model.height.x=1").find("asks for a part of model.height"), std::string::npos);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "tests/support/program.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
+#include "train/checkpoint.h"
 
 namespace vkopple {
 namespace {
@@ -49,6 +50,20 @@ TEST_F(TrainCommand, TrainsAndGoesOn) {
   const auto third = train({"--out", out(), "--resume", "--steps", "2"});
   expect_success(third);
   EXPECT_NE(third.errors.find("has its 2 steps already"), std::string::npos) << third.errors;
+}
+
+TEST_F(TrainCommand, SetsValuesOfTheConfiguration) {
+  const auto first = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "1", "--batch", "2",
+                            "--set", "model.statistics_frames=second", "--set", "model.reg=0.5"});
+  expect_success(first);
+  const Config saved = read_checkpoint_header(folder_ / "run" / "latest.safetensors").config;
+  EXPECT_EQ(saved.model.statistics_frames, StatisticsFrames::kSecond);
+  EXPECT_EQ(saved.model.reg, 0.5);
+  expect_failure(train({"--out", out(), "--resume", "--set", "model.reg=1"}), 1,
+                 {"model.reg is 0.5 there and 1"});
+  expect_success(train({"--out", out(), "--resume", "--steps", "1", "--set", "model.reg=0.5"}));
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out() + "2", "--set", "model.rig=1"}), 1,
+                 {"model.rig"});
 }
 
 TEST_F(TrainCommand, RefusesWhatCannotBe) {

@@ -8,6 +8,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/set_option.h"
 #include "train/benchmark.h"
 #include "train/conv_benchmark.h"
 
@@ -17,23 +18,23 @@ namespace {
 struct Options {
   std::string what;
   std::string preset = "full";
+  std::vector<std::string> set;
   BenchmarkOptions benchmark;
   bool json = false;
   std::string device;
 };
 
 nlohmann::ordered_json header(const Device& device, const Options& options) {
-  return {{"what", options.what},
-          {"preset", options.preset},
-          {"batch", options.benchmark.batch},
-          {"device", device.caps().name},
-          {"driver", device.caps().driver}};
+  return {{"what", options.what},         {"preset", options.preset},
+          {"set", options.set},           {"batch", options.benchmark.batch},
+          {"device", device.caps().name}, {"driver", device.caps().driver}};
 }
 
 void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
   out["seconds_per_step"] = r.seconds_per_step;
   out["triplets_per_second"] = r.triplets_per_second;
   out["gflop_per_triplet"] = r.gflop_per_triplet;
+  if (r.authors_gflop_per_triplet > 0) out["authors_gflop_per_triplet"] = r.authors_gflop_per_triplet;
   out["peak_device_bytes"] = r.peak_device_bytes;
   out["resident_growth_bytes"] = r.resident_growth_bytes;
   out["first_step_seconds"] = r.first_step_seconds;
@@ -42,11 +43,15 @@ void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
 }
 
 void print(const Device& device, const Options& options, const BenchmarkResult& r) {
-  fmt::print("{} of {}, batch {}, on {} ({})\n", options.what, options.preset, options.benchmark.batch,
+  std::string preset = options.preset;
+  for (const std::string& assignment : options.set) preset += " with " + assignment;
+  fmt::print("{} of {}, batch {}, on {} ({})\n", options.what, preset, options.benchmark.batch,
              device.caps().name, device.caps().driver);
   fmt::print("  {:.4f} s a step, {:.2f} {} a second; {:.1f} GFLOP each, {:.1f} GFLOP/s\n", r.seconds_per_step,
              r.triplets_per_second, options.what == "infer" ? "images" : "triplets", r.gflop_per_triplet,
              r.gflop_per_triplet * r.triplets_per_second);
+  if (r.authors_gflop_per_triplet > 0)
+    fmt::print("  the authors' graph computes {:.1f} GFLOP each\n", r.authors_gflop_per_triplet);
   fmt::print("  {} MiB on the device, {} dispatches; the first step took {:.1f} s\n", r.peak_device_bytes >> 20,
              r.dispatches, r.first_step_seconds);
   std::vector<std::pair<double, std::string>> ops;
@@ -83,7 +88,7 @@ void run(const Options& options) {
                                      {"weight_gradient_gflops", t.weight_gradient}});
     if (!options.json) print(timings);
   } else {
-    const Config config = Config::load(options.preset);
+    const Config config = Config::load(options.preset, options.set);
     const BenchmarkResult result = options.what == "step"
                                        ? benchmark_step(device, config, options.benchmark)
                                        : benchmark_inference(device, config, options.benchmark);
@@ -102,6 +107,7 @@ void add_bench(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember({"step", "infer", "conv"}));
   command->add_option("--preset", options->preset, "Preset or configuration file")->capture_default_str();
+  add_set_option(*command, options->set);
   command->add_option("--batch", options->benchmark.batch, "Triplets a step (images for infer)")
       ->capture_default_str();
   command->add_option("--stage", options->benchmark.stage,

@@ -11,6 +11,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/set_option.h"
 #include "tools/stage_rooms.h"
 #include "train/count_progress.h"
 #include "train/interrupt.h"
@@ -27,6 +28,7 @@ struct Options {
   uint64_t seed = 0;
   std::optional<int> size, height, width, frames;
   std::string config = "small";
+  std::vector<std::string> set;
   std::string stage;
   size_t scenes_per_shard = GenerateOptions{.lens = {1, 1, 1}}.scenes_per_shard;
   std::string device;
@@ -34,7 +36,7 @@ struct Options {
 };
 
 GenerateOptions generate_options(const Options& o) {
-  const Config config = Config::load(o.config);
+  const Config config = Config::load(o.config, o.set);
   GenerateOptions options{.folder = o.out, .scenes = o.scenes, .seed = o.seed, .lens = Lens(config.model)};
   options.lens.height = o.size.value_or(o.height.value_or(options.lens.height));
   options.lens.width = o.size.value_or(o.width.value_or(options.lens.width));
@@ -104,6 +106,7 @@ void add_generate(CLI::App& app) {
       ->add_option("--config", o->config,
                    "Whose rooms and angle of view: a configuration file or a preset (full, small, tiny)")
       ->capture_default_str();
+  add_set_option(*command, o->set);
   command->add_option("--stage", o->stage, "The rooms of that stage of the configuration's training");
   command->add_option("--scenes-per-shard", o->scenes_per_shard, "Scenes in one tar file")
       ->capture_default_str()

@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/set_option.h"
 #include "train/checkpoint.h"
 #include "train/interrupt.h"
 #include "train/progress.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct Options {
   std::string config;
+  std::vector<std::string> set;
   std::string data;
   std::string out;
   std::string device;
@@ -51,7 +53,7 @@ Request new_run(const Options& o, TrainerOptions trainer) {
   if (o.data.empty()) throw UsageError("train: say what to train on: --data rooms:SEED, or a folder of shards");
   trainer.data = o.data;
   trainer.seed = o.seed.value_or(0);
-  Request request{Config::load(o.config), std::move(trainer)};
+  Request request{Config::load(o.config, o.set), std::move(trainer)};
   if (o.batch) set_batch(request.config, *o.batch);
   return request;
 }
@@ -68,7 +70,9 @@ Request resumed_run(const Options& o, TrainerOptions trainer) {
   trainer.data = o.data.empty() ? header.position.data : o.data;
   if (trainer.data != header.position.data)
     spdlog::warn("the run was trained on {} and goes on with {}", header.position.data, trainer.data);
-  Request request{o.config.empty() ? header.config : Config::load(o.config), std::move(trainer)};
+  Request request{
+      o.config.empty() ? Config::parse(header.config.to_json(), o.out, o.set) : Config::load(o.config, o.set),
+      std::move(trainer)};
   if (o.batch) set_batch(request.config, *o.batch);
   return request;
 }
@@ -103,6 +107,7 @@ void add_train(CLI::App& app) {
   CLI::App* command = app.add_subcommand("train", "Train a model");
   const auto o = std::make_shared<Options>();
   command->add_option("config", o->config, "A configuration file or a preset: full, small, tiny");
+  add_set_option(*command, o->set);
   command->add_option("--data", o->data,
                       "rooms:SEED draws new rooms at every step; or a shard, or a folder of shards");
   command->add_option("--out", o->out, "Folder of the run: checkpoints and log.jsonl")->required();

@@ -34,6 +34,7 @@ class Config:
     warp: bool = True          # False: the no-warping ablation
     relaxed: bool = False      # True: learned motion
     pose_loss: str = "kl"      # or "js"
+    statistics_frames: str = "all"   # or "second": frames 1 and 3 pass neither depth network nor mask decoder
     dropout: tuple = (0.05, 0.05, 0.0005)   # depth, object, imagination network
 
 
@@ -171,8 +172,8 @@ class ObjectNet(nn.Module):
         self.up1_att_lin = nn.Sequential(nn.Linear(cfg.code, features), nn.LeakyReLU(SLOPE))
         self.outc_att = OutConv(w, 1)
 
-    def forward(self, image):
-        """-> raw slot vectors (B, K, 3 + bins + code), mask logits (B, K, H, W)"""
+    def forward(self, image, masks=True):
+        """-> raw slot vectors (B, K, 3 + bins + code), mask logits (B, K, H, W) or None"""
         skips = [self.inc(image)]
         for i in range(7):
             x = self.assp(skips[-1]) if i == 3 else skips[-1]
@@ -180,6 +181,8 @@ class ObjectNet(nn.Module):
         top = skips.pop()
         sequence = top.flatten(1)[:, None].expand(-1, self.cfg.slots, -1)
         raw = self.lin(self.rnn(sequence)[0])
+        if not masks:
+            return raw, None
         logits = []
         for k in range(self.cfg.slots):
             x = self.up1_att_lin(raw[:, k, 3 + self.cfg.bins:]).reshape(top.shape)
@@ -393,18 +396,19 @@ class Opple(nn.Module):
         depth = self.cfg.max_depth * torch.sigmoid(self.depth_net(image)[:, 0])
         return {"depth": depth, **self.objects(image)}
 
-    def objects(self, image):
-        raw, logits = self.object_net(image)
+    def objects(self, image, masks=True):
+        raw, logits = self.object_net(image, masks)
         location, log_pose, code = decode(self.cfg, raw)
-        masks = F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1)
-        return dict(masks=masks, location=location, log_pose=log_pose, code=code, mask_logits=logits)
+        state = dict(location=location, log_pose=log_pose, code=code)
+        return dict(state, masks=F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1), mask_logits=logits) if masks else state
 
     def forward(self, images, poses):
         """images 3 x (B, 3, H, W) in [0, 1]; poses 3 x (B, 6) -> dict of every named stage"""
         cfg = self.cfg
-        for_depth = [self.depth_net(image) for image in images]        # all three: batch norm sees each
+        seen = [frame == 1 or cfg.statistics_frames == "all" for frame in range(3)]     # for batch norm's averages
+        for_depth = [self.depth_net(image) if s else None for image, s in zip(images, seen)]
         depth = cfg.max_depth * torch.sigmoid(for_depth[1][:, 0])
-        o1, o2, o3 = (self.objects(image) for image in images)
+        o1, o2, o3 = (self.objects(image, s) for image, s in zip(images, seen))
         m12, m23 = relative(poses[0], poses[1]), relative(poses[1], poses[2])
         ego12, ego23 = ego_motion(poses[0], poses[1]), ego_motion(poses[1], poses[2])
 

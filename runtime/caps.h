@@ -14,6 +14,15 @@ enum class AccessPath {
   kStorage,  ///< storage buffers alone: works everywhere
 };
 
+/// Kernels by the mechanism that lets invocations share operands. A device of one type runs the others' kernels
+/// too, slower.
+enum class KernelFamily {
+  kAuto,       ///< registers on CPU devices, shared memory on GPUs
+  kRegisters,  ///< large tiles in registers, operands handed round a subgroup
+  kShared,     ///< tiles in shared memory
+  kPlain,      ///< what runs anywhere
+};
+
 /// What a device can do, as plain data: kernels are chosen from this, and tests make it up.
 struct Caps {
   std::string name;
@@ -44,6 +53,7 @@ struct Caps {
   bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
+  KernelFamily kernels = KernelFamily::kAuto;  ///< a choice, for convolutions
 
   bool cpu() const { return type == DeviceType::kCpu; }
   /// Invocations of a workgroup for kernels that treat every element alike.
@@ -54,6 +64,9 @@ struct Caps {
     return texel < max_storage_range ? texel : max_storage_range;
   }
 };
+
+/// Why the device can't run a family of kernels, in a line; empty: it can.
+std::string missing_for(KernelFamily family, const Caps& caps);
 
 /// "8c2f…" as 32 hexadecimal digits in the usual 8-4-4-4-12 grouping.
 std::string uuid_text(const std::array<uint8_t, 16>& uuid);

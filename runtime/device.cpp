@@ -21,6 +21,15 @@ uint32_t compute_family(VkPhysicalDevice device) {
 
 }  // namespace
 
+std::string missing_for(KernelFamily family, const Caps& caps) {
+  if (family != KernelFamily::kRegisters) return {};
+  // A workgroup must be one subgroup, and hold the weights of 8 output channels.
+  const uint32_t size = caps.subgroup_size;
+  if (caps.cpu() && caps.subgroup_shuffle && size >= 8 && size <= 128 && (size & (size - 1)) == 0) return {};
+  return "kernels 'registers' can't run on " + caps.name +
+         ": they need a CPU device with shuffles among 8 to 128 lanes; leave the choice to the device";
+}
+
 std::filesystem::path default_cache_folder() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
     return std::filesystem::path(cache) / "vkopple";
@@ -40,6 +49,8 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
     caps_.access = *options.access;
   }
   caps_.exact_sums = options.exact_sums;
+  caps_.kernels = options.kernels;
+  if (const std::string why = missing_for(caps_.kernels, caps_); !why.empty()) throw Error(why);
   create_logical_device();
   const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;
   pipelines_ = std::make_unique<PipelineSet>(*this, options.use_cache ? folder : std::filesystem::path());

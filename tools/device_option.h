@@ -1,7 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <string>
+
+#include "runtime/caps.h"
 
 namespace vkopple {
 
@@ -10,6 +13,20 @@ inline void add_device_option(CLI::App& command, std::string& selector) {
   command.add_option(
       "--device", selector,
       "Vulkan device: auto, cpu, an index, a name or a UUID (default: $VKOPPLE_DEVICE, else auto)");
+}
+
+/// Adds `--kernels auto|registers|shared|plain` to a command. Where the device can't run the family, Device says so.
+inline void add_kernels_option(CLI::App& command, KernelFamily& kernels) {
+  static const std::map<std::string, KernelFamily> families{{"auto", KernelFamily::kAuto},
+                                                            {"registers", KernelFamily::kRegisters},
+                                                            {"shared", KernelFamily::kShared},
+                                                            {"plain", KernelFamily::kPlain}};
+  command
+      .add_option_function<std::string>(
+          "--kernels", [&kernels](const std::string& name) { kernels = families.at(name); },
+          "Kernels of convolutions and products: auto (default), registers (CPU devices), shared (shared memory, "
+          "for GPUs) or plain (runs anywhere)")
+      ->check(CLI::IsMember({"auto", "registers", "shared", "plain"}));
 }
 
 }  // namespace vkopple

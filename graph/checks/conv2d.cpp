@@ -80,7 +80,7 @@ void check_conv2d(CheckList& list) {
       {{1, 2, 11, 11}, 1, 3, {}},
   };
   for (const Case& c : cases)
-    for (const std::string kernel : {"shuffle", "uniform"}) {
+    for (const std::string kernel : {"shuffle", "uniform", "shared"}) {
       Case forced = c;
       forced.options.kernel = kernel;
       add(list, forced);

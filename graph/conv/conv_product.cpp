@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "graph/conv/conv_push.h"
+#include "graph/conv/conv_shared.h"
 #include "graph/conv/conv_tile.h"
 #include "graph/tensor.h"
 #include "runtime/error.h"
@@ -16,20 +18,13 @@ namespace {
 
 constexpr std::string_view kShuffle = "shuffle";
 constexpr std::string_view kUniform = "uniform";
+constexpr std::string_view kShared = "shared";
 
 /// As conv_pack.comp has it.
 struct PackPush {
   int32_t out_channels, in_channels, taps;
   int32_t transposed, has_bias;
   int32_t weight_vectors, weight_invocations, invocations;
-};
-
-/// As conv_product.comp has it.
-struct ProductPush {
-  int32_t n, in4, out4, h, w, out_h, out_w;
-  int32_t kernel, stride, step, tap_step, phases;
-  int32_t first[2], taps[2], base[2];
-  int32_t tiles, bias;
 };
 
 struct Channels {
@@ -154,7 +149,13 @@ ProductPush product_push(const ConvShape& s, ConvDirection direction) {
 }
 
 std::string_view chosen_kernel(std::string_view kernel, const Caps& caps) {
-  if (kernel.empty()) return caps.cpu() && can_run_conv_kernel(kShuffle, caps) ? kShuffle : kUniform;
+  if (kernel.empty()) {
+    if (caps.kernels == KernelFamily::kPlain) return kUniform;
+    if (caps.kernels == KernelFamily::kShared) return kShared;
+    const bool registers = caps.cpu() || caps.kernels == KernelFamily::kRegisters;
+    if (registers) return can_run_conv_kernel(kShuffle, caps) ? kShuffle : kUniform;
+    return can_run_conv_kernel(kShared, caps) ? kShared : kUniform;
+  }
   if (!can_run_conv_kernel(kernel, caps))
     throw Error(fmt::format("convolution kernel '{}' can't run on {}; leave the choice to the device", kernel,
                             caps.name));
@@ -194,27 +195,29 @@ Groups groups_of(const ProductPush& push, const ConvTile& tile, int64_t lanes, c
 }  // namespace
 
 bool is_conv_kernel(std::string_view kernel) {
-  return kernel.empty() || kernel == kShuffle || kernel == kUniform;
+  return kernel.empty() || kernel == kShuffle || kernel == kUniform || kernel == kShared;
 }
 
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
   if (kernel == kShuffle) return caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128;
+  if (kernel == kShared) return can_conv_shared(caps);
   return is_conv_kernel(kernel);
 }
 
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
-  return Packing(shape, direction).bytes();
+  // Whichever family runs.
+  return std::max(Packing(shape, direction).bytes(), conv_shared_scratch(shape, direction));
 }
 
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
-  const Packing packing(shape, direction);
-  const Slice packed = scratch.sub(0, packing.bytes());
-  packing.record(recorder, operands, packed);
-
   const Caps& caps = recorder.caps();
   const std::string_view family = chosen_kernel(kernel, caps);
   ProductPush push = product_push(shape, direction);
+  if (family == kShared) return record_conv_shared(recorder, shape, direction, push, operands, scratch);
+  const Packing packing(shape, direction);
+  const Slice packed = scratch.sub(0, packing.bytes());
+  packing.record(recorder, operands, packed);
   const ConvWork work = work_of(push, channels_of(shape, direction).out,
                                 family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
   const ConvTile tile = family == kShuffle

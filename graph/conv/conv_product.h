@@ -25,7 +25,8 @@ struct ConvOperands {
 /// Families of kernels, by the mechanism that brings weights to invocations of the same output channels.
 ///   "shuffle"  each lane fetches 1 / 8 of the weights and hands them round the subgroup (devices of CPU type)
 ///   "uniform"  all lanes load the same address; runs anywhere
-/// An empty name lets the device choose.
+///   "shared"   a workgroup brings tiles of both operands to shared memory (GPUs; conv_shared.h)
+/// An empty name lets Caps choose.
 bool is_conv_kernel(std::string_view kernel);
 /// Whether the device can run the family.
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);

@@ -11,8 +11,13 @@ namespace {
 uint32_t u32(int64_t value) { return static_cast<uint32_t>(value); }
 
 WeightGradientKernel choose(const ConvShape& shape, const Caps& caps, WeightGradientKernel wanted) {
-  if (wanted == WeightGradientKernel::kAuto)
-    return can_register(shape, caps) ? WeightGradientKernel::kRegister : WeightGradientKernel::kSimple;
+  if (wanted == WeightGradientKernel::kAuto) {
+    if (caps.kernels == KernelFamily::kPlain) return WeightGradientKernel::kSimple;
+    if (caps.kernels == KernelFamily::kShared) return WeightGradientKernel::kShared;
+    if (can_register(shape, caps)) return WeightGradientKernel::kRegister;
+    const bool shared = caps.kernels == KernelFamily::kAuto && !caps.cpu() && can_shared(caps);
+    return shared ? WeightGradientKernel::kShared : WeightGradientKernel::kSimple;
+  }
   if (!can_weight_gradient(shape, caps, wanted))
     throw Error(fmt::format("{} cannot run the weight gradient kernel asked for on a {}x{} convolution",
                             caps.name, shape.kernel, shape.kernel));
@@ -29,6 +34,13 @@ struct SumPush {
 
 void record_sum(Recorder& recorder, const ConvShape& s, const WeightGradientPartial& partial, const Slice& from,
                 const Slice& dw, uint32_t accumulate) {
+  if (partial.many_lanes) {
+    const SumPush push{u32(s.co), u32(s.ci), u32(blocks4(s.ci)), 0, u32(partial.strips), u32(strip_vectors(s)),
+                       accumulate};
+    recorder.dispatch_flat("weight_gradient_sum.each", static_cast<uint64_t>(strip_vectors(s)), {from, dw}, push,
+                           {u32(s.kernel * s.kernel)});
+    return;
+  }
   const bool vectors = s.ci % 4 == 0;
   const int64_t lanes = blocks4(partial.lanes_are_out ? s.co : s.ci);
   const int64_t channels = partial.lanes_are_out ? s.ci : s.co;
@@ -44,26 +56,39 @@ void record_sum(Recorder& recorder, const ConvShape& s, const WeightGradientPart
 }  // namespace
 
 bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
+  if (kernel == WeightGradientKernel::kShared) return can_shared(caps);
   return kernel != WeightGradientKernel::kRegister || can_register(shape, caps);
 }
 
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
-  const bool registers = choose(shape, caps, kernel) == WeightGradientKernel::kRegister;
-  return partial_bytes(shape, registers ? plan_register(shape, caps).partial : plan_simple(shape).partial);
+  switch (choose(shape, caps, kernel)) {
+    case WeightGradientKernel::kRegister: return partial_bytes(shape, plan_register(shape, caps).partial);
+    case WeightGradientKernel::kShared: return partial_bytes(shape, plan_shared(shape, caps).partial);
+    default: return partial_bytes(shape, plan_simple(shape).partial);
+  }
 }
 
 void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x, Slice dy, Slice dw,
                             uint32_t accumulate, Slice scratch, WeightGradientKernel kernel) {
-  if (choose(shape, recorder.caps(), kernel) == WeightGradientKernel::kRegister) {
-    const RegisterPlan plan = plan_register(shape, recorder.caps());
+  const Caps& caps = recorder.caps();
+  const auto record = [&](const auto& plan, const auto& first_stage) {
     const Slice partial = scratch.sub(0, partial_bytes(shape, plan.partial));
-    record_register(recorder, plan, x, dy, partial);
+    first_stage(plan, partial);
     record_sum(recorder, shape, plan.partial, partial, dw, accumulate);
-  } else {
-    const SimplePlan plan = plan_simple(shape);
-    const Slice partial = scratch.sub(0, partial_bytes(shape, plan.partial));
-    record_simple(recorder, shape, plan, x, dy, partial);
-    record_sum(recorder, shape, plan.partial, partial, dw, accumulate);
+  };
+  switch (choose(shape, caps, kernel)) {
+    case WeightGradientKernel::kRegister:
+      return record(plan_register(shape, caps), [&](const RegisterPlan& plan, const Slice& partial) {
+        record_register(recorder, plan, x, dy, partial);
+      });
+    case WeightGradientKernel::kShared:
+      return record(plan_shared(shape, caps), [&](const SharedPlan& plan, const Slice& partial) {
+        record_shared(recorder, shape, plan, x, dy, partial);
+      });
+    default:
+      return record(plan_simple(shape), [&](const SimplePlan& plan, const Slice& partial) {
+        record_simple(recorder, shape, plan, x, dy, partial);
+      });
   }
 }
 

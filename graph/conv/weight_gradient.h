@@ -10,8 +10,9 @@ namespace vkopple {
 
 /// The kernels that compute a weight gradient.
 enum class WeightGradientKernel {
-  kAuto,      ///< the fastest that the device can run
+  kAuto,      ///< as Caps::kernels says, by itself the fastest that the device can run
   kSimple,    ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
+  kShared,    ///< every shape, GPUs: a product of matrices through shared memory
   kRegister,  ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "graph/conv/conv_shape.h"
+#include "graph/conv/shared_tile.h"
 #include "graph/tensor.h"
 #include "runtime/recorder.h"
 
@@ -15,6 +16,7 @@ struct WeightGradientPartial {
   int64_t strips = 1;
   bool lanes_are_out = false;
   bool flipped = false;  ///< taps run backwards
+  bool many_lanes = false;  ///< the second stage takes a tap an invocation; neither of the above
 };
 
 /// Vectors that one strip leaves, whichever way round.
@@ -48,5 +50,18 @@ bool can_register(const ConvShape& shape, const Caps& caps);
 RegisterPlan plan_register(const ConvShape& shape, const Caps& caps);
 void record_register(Recorder& recorder, const RegisterPlan& plan, const Slice& x, const Slice& dy,
                      const Slice& partial);
+
+/// The first stage of the shared-memory kernel, and how it cuts the sum.
+struct SharedPlan {
+  SharedGradientTile tile;
+  int64_t row_groups = 1;
+  int64_t column_groups = 1;
+  int64_t strip_pixels;
+  WeightGradientPartial partial;
+};
+bool can_shared(const Caps& caps);
+SharedPlan plan_shared(const ConvShape& shape, const Caps& caps);
+void record_shared(Recorder& recorder, const ConvShape& shape, const SharedPlan& plan, const Slice& x,
+                   const Slice& dy, const Slice& partial);
 
 }  // namespace vkopple

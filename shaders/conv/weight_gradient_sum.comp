@@ -1,4 +1,4 @@
-// variants: floats vectors
+// variants: floats vectors each
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -7,7 +7,8 @@
 // dw[co][ci][tap] (+)= sum over strips, in order, of partial[strip][channel][tap][lane], each lane a vector of 4 channels.
 // Channels are co and lanes ci / 4; or, where kLanesAreOut, channels are ci and lanes co / 4. Taps run backwards where kFlipped.
 // An invocation takes one lane and one channel, and stores floats; or, where ci is a multiple of 4, it takes 4 channels if those are ci,
-// has all taps of 4 consecutive ci, and stores vectors.
+// has all taps of 4 consecutive ci, and stores vectors. Both sum all taps at once, which suits a CPU's few invocations; the variant
+// `each` takes one tap, channels being co and no taps backwards, which gives a GPU as many invocations as a strip has vectors.
 layout(constant_id = 1) const uint kTaps = 9;
 layout(constant_id = 2) const bool kLanesAreOut = false;
 layout(constant_id = 3) const bool kFlipped = false;
@@ -31,6 +32,25 @@ WRITE1(1, dw)
 const uint kChannels = 1;
 #endif
 
+#ifdef EACH
+void main() {
+  uint at = flat_index();
+  if (at >= p.strip_vectors) return;
+  vec4 sum = vec4(0);
+  uint strip = 0;
+  for (; strip + 4 <= p.strips; strip += 4) {  // four on their way at once, added in order
+    vec4 v[4];
+    [[unroll]] for (uint i = 0; i < 4; ++i) v[i] = load4(partial, (strip + i) * p.strip_vectors + at);
+    [[unroll]] for (uint i = 0; i < 4; ++i) sum += v[i];
+  }
+  for (; strip < p.strips; ++strip) sum += load4(partial, strip * p.strip_vectors + at);
+  uint tap = at / p.lanes % kTaps;
+  uint co = at / p.lanes / kTaps;
+  uint ci = at % p.lanes * 4;
+  [[unroll]] for (uint i = 0; i < 4; ++i)
+    if (co < p.co && ci + i < p.ci) add1(dw, (co * p.ci + ci + i) * kTaps + tap, sum[i], p.accumulate)
+}
+#else
 uint dw_tap(uint tap) { return kFlipped ? kTaps - 1 - tap : tap; }
 
 void main() {
@@ -71,3 +91,4 @@ void main() {
   }
 #endif
 }
+#endif

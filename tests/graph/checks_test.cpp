@@ -37,6 +37,28 @@ TEST(ExactSumsTest, ConvolutionsMatchTheirReferences) {
     if (checks.op.starts_with("conv")) run_all(exact_device(), checks);
 }
 
+/// What has kernels of several families, with each: an op's weight gradient follows Caps alone.
+class KernelFamilyTest : public testing::TestWithParam<KernelFamily> {};
+
+TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
+  const Device* device = family_device(GetParam());
+  if (device == nullptr) GTEST_SKIP() << missing_for(GetParam(), test_device().caps());
+  for (OpChecks checks : all_checks()) {
+    if (!checks.op.starts_with("conv") && checks.op != "linear" && checks.op != "lstm") continue;
+    // Products may be forced to a kernel by the case: those of other families run elsewhere.
+    std::erase_if(checks.cases, [](const CheckCase& c) {
+      const auto forced = [&](std::string_view name) { return c.label.ends_with(name); };
+      return (GetParam() != KernelFamily::kRegisters && forced(" shuffle")) ||
+             (GetParam() != KernelFamily::kShared && forced(" shared")) ||
+             (GetParam() != KernelFamily::kPlain && forced(" uniform"));
+    });
+    run_all(*device, checks);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, KernelFamilyTest,
+                         testing::Values(KernelFamily::kRegisters, KernelFamily::kShared, KernelFamily::kPlain));
+
 std::string test_name(const testing::TestParamInfo<OpChecks>& test) { return std::string(test.param.op); }
 
 INSTANTIATE_TEST_SUITE_P(Ops, OpCheckTest, testing::ValuesIn(all_checks()), test_name);

@@ -176,7 +176,7 @@ TEST(ConvProductTest, MatchesPlainLoopsOverManyTiles) {
   };
   for (const ConvShape& shape : shapes)
     for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed})
-      for (const std::string kernel : {"shuffle", "uniform"}) {
+      for (const std::string kernel : {"shuffle", "uniform", "shared"}) {
         if (!can_run_conv_kernel(kernel, test_device().caps())) {
           std::cout << "left out, the device can't run: " << kernel << "\n";
           continue;

@@ -101,7 +101,8 @@ void check(const Device& device, const ConvShape& s, WeightGradientKernel kernel
   }
 }
 
-constexpr WeightGradientKernel kKernels[] = {WeightGradientKernel::kSimple, WeightGradientKernel::kRegister};
+constexpr WeightGradientKernel kKernels[] = {WeightGradientKernel::kSimple, WeightGradientKernel::kRegister,
+                                             WeightGradientKernel::kShared};
 
 /// n, ci, h, w, co, ho, wo, kernel, stride, padding, dilation
 const std::vector<ConvShape>& shapes() {

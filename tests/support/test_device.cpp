@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 
 #include "runtime/error.h"
@@ -21,6 +22,16 @@ const Device& test_device() {
 const Device& exact_device() {
   static const Device device({.selector = "", .on_message = fail_test, .exact_sums = true});
   return device;
+}
+
+const Device* family_device(KernelFamily family) {
+  static std::map<KernelFamily, std::unique_ptr<Device>> devices;
+  if (!missing_for(family, test_device().caps()).empty()) return nullptr;
+  auto& device = devices[family];
+  if (!device)
+    device = std::make_unique<Device>(
+        DeviceOptions{.selector = "", .on_message = fail_test, .kernels = family, .cache_folder = {}});
+  return device.get();
 }
 
 const Device* other_access_device() {

@@ -22,6 +22,7 @@ struct Options {
   BenchmarkOptions benchmark;
   bool json = false;
   std::string device;
+  KernelFamily kernels = KernelFamily::kAuto;
 };
 
 nlohmann::ordered_json header(const Device& device, const Options& options) {
@@ -70,7 +71,7 @@ void print(const std::vector<ConvTiming>& timings) {
 
 void run(const Options& options) {
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
-  const Device device({.selector = options.device});
+  const Device device({.selector = options.device, .kernels = options.kernels});
   nlohmann::ordered_json out = header(device, options);
   if (options.what == "conv") {
     const auto timings = benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats);
@@ -119,6 +120,7 @@ void add_bench(CLI::App& app) {
                     "Leave out the times of single ops, which take runs of their own");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
+  add_kernels_option(*command, options->kernels);
   command->footer("Example: vkopple bench step --preset small --batch 4 --json");
   command->callback([options] { run(*options); });
 }

@@ -33,6 +33,7 @@ struct Options {
   std::string grid;
   bool json = false;
   std::string device;
+  KernelFamily kernels = KernelFamily::kAuto;
 };
 
 template <class T>
@@ -127,7 +128,7 @@ std::optional<RgbImage> try_to_read(const std::string& path, CountProgress& prog
 }
 
 void run(const Options& o) {
-  const Device device({.selector = o.device});
+  const Device device({.selector = o.device, .kernels = o.kernels});
   const LoadedModel model = load_model(device, o.model);
   Inference inference(o, device, model);
   const Interrupt interrupt;
@@ -164,6 +165,7 @@ void add_infer(CLI::App& app) {
                       fmt::format("Write the first {} images with overlay and depth as a PNG", kGridRows));
   command->add_flag("--json", o->json, "Print JSON");
   add_device_option(*command, o->device);
+  add_kernels_option(*command, o->kernels);
   command->footer("Example: vkopple infer run/latest.safetensors photo.jpg room.png --out seen");
   command->callback([o] { run(*o); });
 }

@@ -26,6 +26,7 @@ struct Options {
   std::string data;
   std::string out;
   std::string device;
+  KernelFamily kernels = KernelFamily::kAuto;
   std::optional<uint64_t> steps;
   std::optional<uint64_t> seed;
   std::optional<int> batch;
@@ -83,7 +84,7 @@ void run(const Options& o) {
   trainer_options.checkpoint_every = o.checkpoint_every;
   trainer_options.eval_every = o.eval_every;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
-  const Device device({.selector = o.device});
+  const Device device({.selector = o.device, .kernels = o.kernels});
   const Interrupt interrupt;
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
   Progress progress(trainer.plan().steps());
@@ -138,6 +139,7 @@ void add_train(CLI::App& app) {
       "Take every sum in a fixed order, so that two runs on a device give the same bytes; the default, "
       "and so far the only way there is");
   add_device_option(*command, o->device);
+  add_kernels_option(*command, o->kernels);
   command->footer(
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
       "          vkopple train --out run --steps 10000 --resume");

@@ -18,6 +18,7 @@ struct Options {
   bool plain_sums = false;
   bool json = false;
   std::string device;
+  KernelFamily kernels = KernelFamily::kAuto;
 };
 
 nlohmann::ordered_json to_json(const ParityEntry& e) {
@@ -39,7 +40,7 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
-  const Device device({.selector = options.device, .exact_sums = !options.plain_sums});
+  const Device device({.selector = options.device, .exact_sums = !options.plain_sums, .kernels = options.kernels});
   const ParityReport report = check_parity(device, options.fixture);
   if (!options.dump.empty()) write_safetensors(options.dump, {{"fixture", options.fixture}}, report.computed);
   if (options.json) {
@@ -69,6 +70,7 @@ void add_verify(CLI::App& app) {
       "what is compared is the formulas: with batch statistics, rounding alone moves LeakyReLU over its kink");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
+  add_kernels_option(*command, options->kernels);
   command->footer("Example: vkopple verify tests/fixtures/rigid.safetensors --dump computed.safetensors");
   command->callback([options] { run(*options); });
 }

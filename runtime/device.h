@@ -15,13 +15,13 @@ namespace vkopple {
 class PipelineSet;
 
 struct DeviceOptions {
-  std::string selector;                ///< as device_selector takes it
-  MessageSink on_message;              ///< loads the validation layer and receives what it says
-  std::optional<AccessPath> access;    ///< forces an access path (tests run both)
-  bool exact_sums = false;             ///< Caps::exact_sums
+  std::string selector;                        ///< as device_selector takes it
+  MessageSink on_message;                      ///< loads the validation layer and receives what it says
+  std::optional<AccessPath> access;            ///< forces an access path (tests run both)
+  bool exact_sums = false;                     ///< Caps::exact_sums
   KernelFamily kernels = KernelFamily::kAuto;  ///< Caps::kernels; Error where the device can't run the family
-  std::filesystem::path cache_folder;  ///< of the pipeline cache; empty: default_cache_folder()
-  bool use_cache = true;               ///< false: neither reads nor writes the pipeline cache
+  std::filesystem::path cache_folder;          ///< of the pipeline cache; empty: default_cache_folder()
+  bool use_cache = true;                       ///< false: neither reads nor writes the pipeline cache
 };
 
 /// $XDG_CACHE_HOME/vkopple or ~/.cache/vkopple; empty when neither is known.

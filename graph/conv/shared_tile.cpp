@@ -59,8 +59,8 @@ bool fits_limits(const Tile& tile, const Caps& caps) {
 }
 
 /// Time of `groups` workgroups, in cycles of one lane: on NVIDIA's multiprocessors 128 lanes multiply and add
-/// while shared memory serves 8 vectors, one if all lanes of a subgroup read the same; a fetch from memory costs
-/// some ten instructions. Too few invocations cost as much as kFill.
+/// while shared memory serves 8 vectors, one if all lanes of a subgroup read the same; a fetch from memory
+/// costs some ten instructions. Too few invocations cost as much as kFill.
 double cost(int64_t groups, uint32_t invocations, double products, double vectors, double fetches) {
   const double step = products + 4 * vectors + 10 * fetches / invocations;
   return std::max(static_cast<double>(groups) * invocations, kFill) * step;
@@ -94,10 +94,10 @@ SharedTile choose_shared_tile(const SharedWork& work, const Caps& caps) {
     // A slab lies within one tap: vectors that the last of a tap has too many are multiplied for nothing.
     if (work.in4 % 2 != 0 && work.in4 < 8) tile.depth = 1;
     if (!fits(tile, caps)) continue;
-    const int64_t groups = work.phases * ceil_div(work.pixels, tile.tile_pixels()) *
-                           ceil_div(4 * work.out4, tile.tile_channels());
-    const double now = cost(groups, tile.invocations(), 16.0 * tile.out4 * tile.pixels,
-                            tile.pixels + tile.out4, tile.tile_pixels() + tile.tile_channels());
+    const int64_t groups =
+        work.phases * ceil_div(work.pixels, tile.tile_pixels()) * ceil_div(4 * work.out4, tile.tile_channels());
+    const double now = cost(groups, tile.invocations(), 16.0 * tile.out4 * tile.pixels, tile.pixels + tile.out4,
+                            tile.tile_pixels() + tile.tile_channels());
     if (now >= least) continue;
     best = tile;
     least = now;

@@ -37,8 +37,8 @@ void record_sum(Recorder& recorder, const ConvShape& s, const WeightGradientPart
   if (partial.many_lanes) {
     const SumPush push{u32(s.co), u32(s.ci), u32(blocks4(s.ci)), 0, u32(partial.strips), u32(strip_vectors(s)),
                        accumulate};
-    recorder.dispatch_flat("weight_gradient_sum.each", static_cast<uint64_t>(strip_vectors(s)), {from, dw}, push,
-                           {u32(s.kernel * s.kernel)});
+    recorder.dispatch_flat("weight_gradient_sum.each", static_cast<uint64_t>(strip_vectors(s)), {from, dw},
+                           push, {u32(s.kernel * s.kernel)});
     return;
   }
   const bool vectors = s.ci % 4 == 0;
@@ -62,9 +62,12 @@ bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradien
 
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
   switch (choose(shape, caps, kernel)) {
-    case WeightGradientKernel::kRegister: return partial_bytes(shape, plan_register(shape, caps).partial);
-    case WeightGradientKernel::kShared: return partial_bytes(shape, plan_shared(shape, caps).partial);
-    default: return partial_bytes(shape, plan_simple(shape).partial);
+    case WeightGradientKernel::kRegister:
+      return partial_bytes(shape, plan_register(shape, caps).partial);
+    case WeightGradientKernel::kShared:
+      return partial_bytes(shape, plan_shared(shape, caps).partial);
+    default:
+      return partial_bytes(shape, plan_simple(shape).partial);
   }
 }
 

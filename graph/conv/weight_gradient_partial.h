@@ -15,7 +15,7 @@ namespace vkopple {
 struct WeightGradientPartial {
   int64_t strips = 1;
   bool lanes_are_out = false;
-  bool flipped = false;  ///< taps run backwards
+  bool flipped = false;     ///< taps run backwards
   bool many_lanes = false;  ///< the second stage takes a tap an invocation; neither of the above
 };
 

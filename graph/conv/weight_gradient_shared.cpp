@@ -28,9 +28,8 @@ bool can_shared(const Caps& caps) {
 }
 
 SharedPlan plan_shared(const ConvShape& s, const Caps& caps) {
-  const SharedGradientWork work{.pixels = s.n * s.ho * s.wo,
-                                .rows4 = blocks4(s.co),
-                                .columns4 = s.kernel * s.kernel * blocks4(s.ci)};
+  const SharedGradientWork work{
+      .pixels = s.n * s.ho * s.wo, .rows4 = blocks4(s.co), .columns4 = s.kernel * s.kernel * blocks4(s.ci)};
   SharedPlan plan{.tile = choose_shared_gradient_tile(work, caps), .strip_pixels = 0, .partial = {}};
   const int64_t depth = plan.tile.depth;
   plan.row_groups = ceil_div(work.rows4, plan.tile.tile_rows4());

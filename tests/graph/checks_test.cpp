@@ -57,7 +57,8 @@ TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, KernelFamilyTest,
-                         testing::Values(KernelFamily::kRegisters, KernelFamily::kShared, KernelFamily::kPlain));
+                         testing::Values(KernelFamily::kRegisters, KernelFamily::kShared,
+                                         KernelFamily::kPlain));
 
 std::string test_name(const testing::TestParamInfo<OpChecks>& test) { return std::string(test.param.op); }
 

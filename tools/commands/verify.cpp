@@ -40,7 +40,8 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
-  const Device device({.selector = options.device, .exact_sums = !options.plain_sums, .kernels = options.kernels});
+  const Device device(
+      {.selector = options.device, .exact_sums = !options.plain_sums, .kernels = options.kernels});
   const ParityReport report = check_parity(device, options.fixture);
   if (!options.dump.empty()) write_safetensors(options.dump, {{"fixture", options.fixture}}, report.computed);
   if (options.json) {

@@ -192,7 +192,7 @@ void Executor::record_forward(bool profile) {
     const Node& node = graph_->nodes()[n];
     const auto x = operands(node.inputs);
     const auto y = operands(node.outputs);
-    recorder.begin_section(node.op->name());
+    recorder.begin_section();
     recorder.expect_work(needs_[n].forward_flop);
     std::vector<Operand> saved = node_memory_[n].saved;
     if (saved.empty())  // inference, or no gradient comes this way
@@ -219,7 +219,7 @@ void Executor::record_backward(bool profile) {
       dx.push_back(step.wants[i] != 0 ? gradient_operand(node.inputs[i])
                                       : Operand{graph_->info(node.inputs[i]).spec, {}});
     const NodeMemory& memory = node_memory_[step.node];
-    recorder.begin_section(node.op->name());
+    recorder.begin_section();
     recorder.expect_work(needs_[step.node].backward_flop);
     node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
     recorder.end_section();
@@ -231,23 +231,23 @@ void Executor::record_update(bool profile) {
   Recorder recorder(*device_, profile);
   for (const Node& node : graph_->updates()) {
     const auto x = operands(node.inputs);
-    recorder.begin_section(node.op->name());
+    recorder.begin_section();
     node.op->record_forward(recorder, {x, {}, {}, {}});
     recorder.end_section();
   }
   update_ = recorder.finish();
 }
 
-void Executor::forward() { forward_->run(); }
+void Executor::forward() { forward_ran_ = forward_->run(); }
 
 void Executor::backward() {
   if (!backward_) throw Error("this executor was made without a loss");
-  backward_->run();
+  backward_ran_ = backward_->run();
 }
 
 void Executor::update() {
   if (!update_) throw Error("the graph has no update nodes");
-  update_->run();
+  update_ran_ = update_->run();
 }
 
 void Executor::require_host_access(Value value, const char* what) const {
@@ -285,14 +285,6 @@ std::vector<float> Executor::read_gradient(Value parameter) const {
     throw Error(fmt::format("{} receives no gradient", graph_->info(parameter.id()).name));
   const Operand gradient = gradient_operand(parameter.id());
   return from_layout(gradient.spec, download_values<float>(*device_, gradient.slice));
-}
-
-Profile Executor::profile() const {
-  Profile profile;
-  profile.forward = forward_->section_seconds();
-  if (backward_) profile.backward = backward_->section_seconds();
-  if (update_) profile.update = update_->section_seconds();
-  return profile;
 }
 
 uint64_t Executor::total_bytes() const {

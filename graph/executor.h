@@ -9,6 +9,7 @@
 
 #include "graph/autodiff.h"
 #include "graph/graph.h"
+#include "graph/profile.h"
 #include "runtime/buffer.h"
 #include "runtime/recorder.h"
 
@@ -35,14 +36,7 @@ struct ExecutorOptions {
   std::shared_ptr<GroupStore> groups;  ///< null: groups of its own
   Value loss;                          ///< none: inference, forward alone
   std::vector<std::string> trained;    ///< parameter groups that receive gradients
-  bool profile = false;                ///< timestamps around every op
-};
-
-/// Seconds, by op, of the last run of each pass; empty without profiling.
-struct Profile {
-  std::map<std::string, double> forward;
-  std::map<std::string, double> backward;
-  std::map<std::string, double> update;
+  bool profile = false;                ///< timestamps around every command
 };
 
 /// Runs a graph on a device: places every tensor, records each pass once, replays it as often as asked.
@@ -68,7 +62,9 @@ class Executor {
   /// Where a value lies. Intermediate values that are not kept share their bytes with others.
   Slice slice(Value value) const;
 
-  Profile profile() const;
+  /// The passes that this executor has, each as it ran last (all of them must have run); without nodes unless
+  /// profiling.
+  std::vector<PassProfile> passes() const;
   uint64_t shared_bytes() const { return shared_bytes_; }  ///< of activations and gradients
   uint64_t total_bytes() const;                            ///< everything on the device, groups included
   double forward_flop() const { return forward_flop_; }
@@ -88,6 +84,10 @@ class Executor {
   void record_forward(bool profile);
   void record_backward(bool profile);
   void record_update(bool profile);
+  NodeProfile profile_of(const Node& node) const;
+  NodeProfile forward_profile(size_t n) const;
+  NodeProfile backward_profile(const BackwardStep& step) const;
+  NodeProfile update_profile(const Node& node) const;
   void require_host_access(Value value, const char* what) const;
 
   const Device* device_;
@@ -104,6 +104,9 @@ class Executor {
   std::unique_ptr<Commands> forward_;
   std::unique_ptr<Commands> backward_;
   std::unique_ptr<Commands> update_;
+  RunTimes forward_ran_;
+  RunTimes backward_ran_;
+  RunTimes update_ran_;
   uint64_t shared_bytes_ = 0;
   double forward_flop_ = 0;
   double backward_flop_ = 0;

@@ -30,7 +30,8 @@ Perception::Perception(const Device& device, const ModelConfig& config, std::sha
     graph_.keep("location", objects_.location);
     graph_.keep("log_pose", objects_.log_pose);
   }
-  executor_ = std::make_unique<Executor>(device, graph_, ExecutorOptions{.groups = std::move(groups)});
+  executor_ = std::make_unique<Executor>(
+      device, graph_, ExecutorOptions{.groups = std::move(groups), .profile = options.profile});
 }
 
 Percepts Perception::see(std::span<const float> images) {

@@ -22,7 +22,8 @@ struct Percepts {
 
 struct PerceptionOptions {
   int64_t batch = 1;
-  bool objects = true;  ///< false: depth alone
+  bool objects = true;   ///< false: depth alone
+  bool profile = false;  ///< timestamps around every command
 };
 
 /// The trained networks on single images. Weights and averages are those of `groups`, as training or a

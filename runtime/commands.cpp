@@ -23,7 +23,9 @@ Commands::~Commands() {
   if (pool_ != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool_, nullptr);
 }
 
-void Commands::run() const {
+RunTimes Commands::run() const {
+  RunTimes times;
+  times.begin = std::chrono::steady_clock::now();
   check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
   for (size_t i = 0; i < buffers_.size(); ++i) {
     VkSubmitInfo submit{};
@@ -33,21 +35,25 @@ void Commands::run() const {
     const bool last = i + 1 == buffers_.size();
     check(vkQueueSubmit(device_->queue(), 1, &submit, last ? fence_ : VK_NULL_HANDLE), "vkQueueSubmit");
   }
+  times.submitted = std::chrono::steady_clock::now();
   check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  times.end = std::chrono::steady_clock::now();
+  return times;
 }
 
-std::map<std::string, double> Commands::section_seconds() const {
-  std::map<std::string, double> seconds;
-  if (sections_.empty()) return seconds;
-  std::vector<uint64_t> ticks(sections_.size() * 2);
-  check(vkGetQueryPoolResults(device_->handle(), queries_, 0, static_cast<uint32_t>(ticks.size()),
-                              ticks.size() * sizeof(uint64_t), ticks.data(), sizeof(uint64_t),
-                              VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
-        "vkGetQueryPoolResults");
+std::vector<CommandTime> Commands::command_times() const {
+  if (timed_.empty()) return {};
+  std::vector<uint64_t> ticks(stamps_);
+  check(
+      vkGetQueryPoolResults(device_->handle(), queries_, 0, stamps_, ticks.size() * sizeof(uint64_t),
+                            ticks.data(), sizeof(uint64_t), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
+      "vkGetQueryPoolResults");
   const double period = static_cast<double>(device_->caps().timestamp_period) * 1e-9;
-  for (size_t i = 0; i < sections_.size(); ++i)
-    seconds[sections_[i]] += static_cast<double>(ticks[2 * i + 1] - ticks[2 * i]) * period;
-  return seconds;
+  const auto seconds = [&](uint32_t stamp) { return static_cast<double>(ticks[stamp] - ticks[0]) * period; };
+  std::vector<CommandTime> times;
+  times.reserve(timed_.size());
+  for (const Timed& t : timed_) times.push_back({t.name, t.section, seconds(t.begin), seconds(t.end)});
+  return times;
 }
 
 }  // namespace vkopple

@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t kSetsPerPool = 256;
 constexpr uint32_t kDescriptorsPerSet = 8;
-constexpr uint32_t kMostSections = 16384;
+constexpr uint32_t kMostStamps = 65536;
 /// A chunk of this size takes a slow integrated GPU well under a second; watchdogs wait for two or more.
 constexpr double kChunkFlop = 40e9;
 constexpr size_t kChunkDispatches = 512;
@@ -41,7 +41,7 @@ Recorder::Recorder(const Device& device, bool timestamps)
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = 2 * kMostSections;
+    info.queryCount = kMostStamps;
     check(vkCreateQueryPool(device.handle(), &info, nullptr, &commands_->queries_), "vkCreateQueryPool");
   }
   begin_buffer();
@@ -62,7 +62,7 @@ void Recorder::begin_buffer() {
   begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(vkBeginCommandBuffer(buffer_, &begin), "vkBeginCommandBuffer");
   if (timestamps_ && commands_->buffers_.empty())
-    vkCmdResetQueryPool(buffer_, commands_->queries_, 0, 2 * kMostSections);
+    vkCmdResetQueryPool(buffer_, commands_->queries_, 0, kMostStamps);
   // Whatever was submitted before (another chunk, another program, the host's writes) is done and seen from
   // here on.
   memory_barrier(buffer_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWritten | VK_ACCESS_HOST_WRITE_BIT, kWork,
@@ -71,6 +71,21 @@ void Recorder::begin_buffer() {
   pending_writes_.clear();
   chunk_dispatches_ = 0;
   chunk_flop_ = 0;
+  if (timestamps_) stamp();
+}
+
+void Recorder::stamp() {
+  if (commands_->stamps_ == kMostStamps)
+    throw Error(fmt::format("a recording with timestamps holds at most {} commands; profile a smaller model",
+                            kMostStamps));
+  vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands_->queries_, commands_->stamps_);
+  ++commands_->stamps_;
+}
+
+void Recorder::recorded(std::string_view name) {
+  if (!timestamps_) return;
+  stamp();
+  commands_->timed_.push_back({std::string(name), section_, commands_->stamps_ - 2, commands_->stamps_ - 1});
 }
 
 void Recorder::end_buffer() {
@@ -198,6 +213,7 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
   vkCmdDispatch(buffer_, groups[0], groups[1], groups[2]);
   ++commands_->dispatches_;
   ++chunk_dispatches_;
+  recorded(shader);
 }
 
 void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initializer_list<Slice> bindings,
@@ -215,6 +231,7 @@ void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initi
 void Recorder::fill(const Slice& slice, uint32_t word) {
   order({}, std::span(&slice, 1));
   vkCmdFillBuffer(buffer_, slice.buffer->handle(), slice.offset, (slice.bytes + 3) / 4 * 4, word);
+  recorded("fill");
 }
 
 void Recorder::copy(const Slice& from, const Slice& to) {
@@ -223,26 +240,18 @@ void Recorder::copy(const Slice& from, const Slice& to) {
   order(std::span(&from, 1), std::span(&to, 1));
   const VkBufferCopy region{from.offset, to.offset, from.bytes};
   vkCmdCopyBuffer(buffer_, from.buffer->handle(), to.buffer->handle(), 1, &region);
+  recorded("copy");
 }
 
-void Recorder::begin_section(std::string_view name) {
+void Recorder::begin_section() {
   if (chunk_flop_ > kChunkFlop || chunk_dispatches_ > kChunkDispatches) {
     end_buffer();
     begin_buffer();
   }
-  in_section_ = timestamps_ && commands_->sections_.size() < kMostSections;
-  if (!in_section_) return;
-  vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands_->queries_,
-                      static_cast<uint32_t>(2 * commands_->sections_.size()));
-  commands_->sections_.emplace_back(name);
+  section_ = commands_->sections_++;
 }
 
-void Recorder::end_section() {
-  if (!in_section_) return;
-  vkCmdWriteTimestamp(buffer_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, commands_->queries_,
-                      static_cast<uint32_t>(2 * commands_->sections_.size() - 1));
-  in_section_ = false;
-}
+void Recorder::end_section() { section_ = -1; }
 
 void Recorder::expect_work(double flop) { chunk_flop_ += flop; }
 

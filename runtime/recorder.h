@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -42,6 +43,22 @@ class Push {
 
 using Groups = std::array<uint32_t, 3>;
 
+/// When commands went to the device and were waited for.
+struct RunTimes {
+  std::chrono::steady_clock::time_point begin;      ///< before the first submission
+  std::chrono::steady_clock::time_point submitted;  ///< after the last
+  std::chrono::steady_clock::time_point end;        ///< all done
+};
+
+/// One dispatch, fill or copy of the last run, on the device's clock. It begins where the one before it in its
+/// chunk ended, so that what a device overlaps is counted once.
+struct CommandTime {
+  std::string name;  ///< the shader, "fill" or "copy"
+  int section = -1;  ///< counted from 0 in order of recording; -1: in none
+  double begin = 0;  ///< seconds
+  double end = 0;
+};
+
 /// What a recorder left: command buffers, replayed as often as wanted. The slices it names must outlive it.
 class Commands {
  public:
@@ -51,9 +68,9 @@ class Commands {
   Commands& operator=(const Commands&) = delete;
 
   /// Submits every chunk in order and waits for the last one.
-  void run() const;
-  /// Seconds that each section took in the last run, summed by name; empty unless recorded with timestamps.
-  std::map<std::string, double> section_seconds() const;
+  RunTimes run() const;
+  /// Of the last run, in order of recording; empty unless recorded with timestamps.
+  std::vector<CommandTime> command_times() const;
   size_t dispatches() const { return dispatches_; }
   size_t barriers() const { return barriers_; }
   size_t chunks() const { return buffers_.size(); }
@@ -66,7 +83,16 @@ class Commands {
   VkFence fence_ = VK_NULL_HANDLE;
   std::vector<VkCommandBuffer> buffers_;
   std::vector<VkDescriptorPool> descriptor_pools_;
-  std::vector<std::string> sections_;  ///< section i has queries 2i and 2i + 1
+  /// A command between two timestamps.
+  struct Timed {
+    std::string name;
+    int section;
+    uint32_t begin;  ///< its query
+    uint32_t end;
+  };
+  int sections_ = 0;
+  std::vector<Timed> timed_;
+  uint32_t stamps_ = 0;  ///< queries that are written
   static constexpr uint64_t kAbsentBytes = 256;
   /// Bound where an optional operand is absent: one part where kernels would read, one where they would write.
   Slice absent(bool writes) const { return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes); }
@@ -80,6 +106,8 @@ class Commands {
 /// are submitted one by one, so that no watchdog sees a submission of many seconds.
 class Recorder {
  public:
+  /// `timestamps`: Commands tell how long each command takes. Throws Error for more commands than the
+  /// timestamps hold.
   explicit Recorder(const Device& device, bool timestamps = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
@@ -105,8 +133,8 @@ class Recorder {
   void fill(const Slice& slice, uint32_t word = 0);
   void copy(const Slice& from, const Slice& to);
 
-  /// Brackets what one op records, for timestamps.
-  void begin_section(std::string_view name);
+  /// Brackets what one op records, for CommandTime::section.
+  void begin_section();
   void end_section();
   /// Tells how much work follows (multiply-adds count two), for cutting into chunks.
   void expect_work(double flop);
@@ -117,6 +145,9 @@ class Recorder {
  private:
   void begin_buffer();
   void end_buffer();
+  void stamp();
+  /// Told after each command that is recorded.
+  void recorded(std::string_view name);
   void order(std::span<const Slice> reads, std::span<const Slice> writes);
   VkDescriptorSet make_set(const Pipeline& pipeline, std::span<const Slice> bindings);
   VkDescriptorSet allocate_set(const Pipeline& pipeline);
@@ -130,7 +161,7 @@ class Recorder {
   uint32_t sets_left_ = 0;
   size_t chunk_dispatches_ = 0;
   double chunk_flop_ = 0;
-  bool in_section_ = false;
+  int section_ = -1;
 };
 
 }  // namespace vkopple

@@ -12,8 +12,10 @@
 #include "models/perception.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "train/op_table.h"
 #include "train/random.h"
 #include "train/resident_memory.h"
+#include "train/trace.h"
 #include "train/training_step.h"
 
 namespace vkopple {
@@ -76,11 +78,19 @@ void time_steps(BenchmarkResult& result, const BenchmarkOptions& options, const 
   result.triplets_per_second = static_cast<double>(options.batch) / result.seconds_per_step;
 }
 
-void add_profile(BenchmarkResult& result, const Executor& executor) {
-  const Profile profile = executor.profile();
-  for (const auto& [op, s] : profile.forward) result.by_op[op + ".forward"] += s;
-  for (const auto& [op, s] : profile.backward) result.by_op[op + ".backward"] += s;
-  for (const auto& [op, s] : profile.update) result.by_op[op + ".update"] += s;
+/// Completes the result by a step that was made for profiling, `step`, run once for warmth before.
+void profile_step(BenchmarkResult& result, const BenchmarkOptions& options, const Device& device,
+                  const std::function<void(Trace&)>& step) {
+  Trace warm_up(device.caps());
+  step(warm_up);
+  Trace trace(device.caps());
+  {
+    const Trace::Span span(&trace, "step");
+    step(trace);
+  }
+  if (!options.trace.empty()) trace.write(options.trace);
+  for (const OpRow& row : op_table(result.passes, OpRows::kByOp))
+    result.by_op[row.op + "." + row.pass] = row.seconds;
 }
 
 }  // namespace
@@ -114,9 +124,10 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
   if (!options.profile) return result;
   training.reset();  // two models at once may not fit
   build(true);       // timestamps cost a little: they get runs of their own
-  run();
-  run();
-  add_profile(result, training->executor());
+  profile_step(result, options, device, [&](Trace& trace) {
+    training->run(triplets, 1, step++, &trace);
+    result.passes = training->executor().passes();
+  });
   return result;
 }
 
@@ -127,10 +138,13 @@ BenchmarkResult benchmark_inference(const Device& device, const Config& config,
   const auto memory_before = resident_memory();
   std::unique_ptr<Perception> perception;
   const auto run = [&] { perception->see(images); };
-  result.first_step_seconds = seconds_of([&] {
+  const auto build = [&](bool profile) {
     perception = std::make_unique<Perception>(device, config.model, std::make_shared<GroupStore>(device),
-                                              PerceptionOptions{.batch = options.batch});
+                                              PerceptionOptions{.batch = options.batch, .profile = profile});
     initialise(perception->executor(), perception->tensors());
+  };
+  result.first_step_seconds = seconds_of([&] {
+    build(false);
     run();
   });
   time_steps(result, options, run);
@@ -139,6 +153,14 @@ BenchmarkResult benchmark_inference(const Device& device, const Config& config,
   result.peak_device_bytes = executor.total_bytes();
   result.dispatches = executor.dispatches();
   result.resident_growth_bytes = growth_since(memory_before);
+  if (!options.profile) return result;
+  perception.reset();
+  build(true);
+  profile_step(result, options, device, [&](Trace& trace) {
+    run();
+    result.passes = perception->executor().passes();
+    for (const PassProfile& pass : result.passes) trace.add_pass(pass);
+  });
   return result;
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
+#include "graph/profile.h"
 #include "models/config.h"
 
 namespace vkopple {
@@ -12,9 +15,10 @@ class Device;
 
 struct BenchmarkOptions {
   int64_t batch = 4;
-  bool profile = true;  ///< times every op too, in runs of their own; false: BenchmarkResult::by_op stays empty
+  bool profile = true;  ///< times every op too, in runs of their own; false: passes and by_op stay empty
   int repeats = 5;      ///< timed runs, after one that builds pipelines and one that warms up
-  std::string stage;    ///< of training, by name; empty: the last one, which trains everything
+  std::filesystem::path trace;  ///< writes a step as a trace (train/trace.h); empty: none
+  std::string stage;            ///< of training, by name; empty: the last one, which trains everything
 };
 
 /// Figures of one benchmark; seconds are wall-clock medians.
@@ -31,6 +35,7 @@ struct BenchmarkResult {
   uint64_t resident_growth_bytes = 0;
   double first_step_seconds = 0;  ///< building the graph and its pipelines, and the first run
   size_t dispatches = 0;
+  std::vector<PassProfile> passes;      ///< one step, op by op
   std::map<std::string, double> by_op;  ///< seconds of device time by op and pass, as "conv2d.backward"
 };
 

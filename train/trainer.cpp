@@ -80,6 +80,7 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
     position_.seed = options_.seed;
   }
   position_.data = options_.data;
+  if (!options_.profile.empty()) profiler_.emplace(device.caps(), options_.profile, options_.profiled_steps);
 }
 
 Trainer::~Trainer() = default;
@@ -90,21 +91,25 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
   Stage stage{.planned = &planned, .source = nullptr, .training = nullptr, .probe = nullptr};
   stage.source =
       open_triplets(*device_, options_.data, lens, s.rooms, s.batch, position_.seed, Reading::kTraining);
-  stage.training = std::make_unique<TrainingStep>(*device_, config_, s, store_.groups());
+  stage.training =
+      std::make_unique<TrainingStep>(*device_, config_, s, store_.groups(), profiler_ && !profiler_->done());
   if (options_.eval_every > 0)
     stage.probe = std::make_unique<DepthProbe>(store_, config_.model, s.rooms, std::min(s.batch, kProbeBatch),
                                                rooms_seed(options_.data) + kProbeSeedDistance);
   return stage;
 }
 
-StepRecord Trainer::train_step(Stage& stage) {
+StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   const auto start = Clock::now();
   const TrainingStage& s = stage.planned->stage;
   const uint64_t step = position_.step;
-  const Triplets triplets =
-      training_triplets(*stage.source, position_.seed, step, config_.training.reverse_probability);
+  Triplets triplets;
+  {
+    const Trace::Span span(trace, "data");
+    triplets = training_triplets(*stage.source, position_.seed, step, config_.training.reverse_probability);
+  }
   StepRecord record{.stage = s.name, .batch = s.batch};
-  record.losses = stage.training->run(triplets, folded(position_.seed), folded(step));
+  record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
   store_.count_step(s.hypotheses == Hypotheses::kBackground);
   record.seconds = seconds_since(start);
@@ -139,13 +144,20 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
     if (!log) log.emplace(options_.folder.log(), position_.step);
     progress.say(stage_text(planned));
     while (position_.step < planned.end && !stopped) {
-      const StepRecord record = train_step(stage);
-      log->add(record);
-      progress.show(record);
-      save_if_due();
+      Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
+      {
+        const Trace::Span span(trace, "step");
+        const StepRecord record = train_step(stage, trace);
+        const Trace::Span after(trace, "log and checkpoint");
+        log->add(record);
+        progress.show(record);
+        save_if_due();
+      }
+      if (trace != nullptr) profiler_->end_step();
       stopped = stop();
     }
   }
+  if (profiler_) profiler_->finish();
   save(false);
   return position_.step >= plan_.steps();
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "train/checkpoint.h"
 #include "train/data/triplets.h"
 #include "train/model_store.h"
+#include "train/profiler.h"
 #include "train/progress.h"
 #include "train/run_folder.h"
 #include "train/stage_plan.h"
@@ -25,6 +27,8 @@ struct TrainerOptions {
   uint64_t seed = 0;                   ///< of weights, order, reversals, dropout
   uint64_t checkpoint_every = 5000;    ///< steps between numbered checkpoints; 0: none
   uint64_t eval_every = 250;           ///< steps between measurements of depth; 0: none
+  std::filesystem::path profile;       ///< where a trace (train/trace.h) goes; empty: none
+  int profiled_steps = 1;              ///< of the trace, which leaves out the run's first step
   double seconds_between_saves = 600;  ///< after which latest.safetensors is written anyway
 };
 
@@ -50,7 +54,7 @@ class Trainer {
   struct Stage;
 
   Stage open_stage(const PlannedStage& planned);
-  StepRecord train_step(Stage& stage);
+  StepRecord train_step(Stage& stage, Trace* trace);
   void save(bool numbered);
   void save_if_due();
 
@@ -62,6 +66,7 @@ class Trainer {
   TrainingPosition position_;
   std::optional<uint64_t> saved_step_;
   std::chrono::steady_clock::time_point saved_at_;
+  std::optional<Profiler> profiler_;
 };
 
 }  // namespace vkopple

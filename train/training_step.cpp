@@ -4,6 +4,7 @@
 
 #include "graph/ops/adam.h"
 #include "runtime/device.h"
+#include "train/trace.h"
 
 namespace vkopple {
 namespace {
@@ -50,15 +51,24 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
   model_->feed_constants(*executor_);
 }
 
-std::map<std::string, double> TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step) {
-  model_->feed_random(*executor_, seed, step);
-  model_->feed(*executor_, triplets);
+std::map<std::string, double> TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step,
+                                                Trace* trace) {
+  {
+    const Trace::Span span(trace, "feed");
+    model_->feed_random(*executor_, seed, step);
+    model_->feed(*executor_, triplets);
+  }
   executor_->forward();
   executor_->backward();
   executor_->update();
   std::map<std::string, double> losses;
-  for (const auto& [name, value] : model_->losses())
-    losses[name] = static_cast<double>(executor_->read(value)[0]);
+  {
+    const Trace::Span span(trace, "read losses");
+    for (const auto& [name, value] : model_->losses())
+      losses[name] = static_cast<double>(executor_->read(value)[0]);
+  }
+  if (trace != nullptr)
+    for (const PassProfile& pass : executor_->passes()) trace->add_pass(pass);
   return losses;
 }
 

@@ -10,6 +10,7 @@
 namespace vkopple {
 
 class Device;
+class Trace;
 
 /// The training step of one stage on a device: the model's graph for the stage's networks and hypotheses, with
 /// Adam for the networks that learn. Weights, averages and optimiser state live in `groups`, which stages
@@ -25,8 +26,9 @@ class TrainingStep {
   int64_t batch() const { return model_->options().batch; }
 
   /// Forward, backward, update on one batch; `step` counts from 0 and numbers the dropout masks. Losses by
-  /// name.
-  std::map<std::string, double> run(const Triplets& triplets, uint32_t seed, uint32_t step);
+  /// name. A step that was made for profiling tells `trace` what it did.
+  std::map<std::string, double> run(const Triplets& triplets, uint32_t seed, uint32_t step,
+                                    Trace* trace = nullptr);
 
  private:
   Graph graph_;

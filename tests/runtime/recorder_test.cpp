@@ -102,12 +102,47 @@ TEST_F(RecorderTest, LongRecordingsAreCutIntoChunks) {
   const Slice b = allocate();
   Recorder recorder(test_device());
   for (int i = 0; i < 4; ++i) {
-    recorder.begin_section("relu");
+    recorder.begin_section();
     recorder.expect_work(1e12);
     relu(recorder, a, b);
     recorder.end_section();
   }
   EXPECT_EQ(recorder.finish()->chunks(), 4U);
+}
+
+TEST_F(RecorderTest, TellsWhenEachCommandRan) {
+  if (test_device().caps().timestamp_period == 0) GTEST_SKIP() << "the device has no timestamps";
+  const Slice a = allocate();
+  const Slice b = allocate();
+  Recorder recorder(test_device(), true);
+  recorder.fill(a);
+  for (int i = 0; i < 2; ++i) {
+    recorder.begin_section();
+    recorder.expect_work(1e12);  // a chunk each
+    relu(recorder, a, b);
+    recorder.copy(b, a);
+    recorder.end_section();
+  }
+  const auto commands = recorder.finish();
+  for (int run = 0; run < 2; ++run) {
+    const RunTimes host = commands->run();
+    const auto times = commands->command_times();
+    ASSERT_EQ(times.size(), 5U);
+    double last = 0;
+    for (size_t i = 0; i < times.size(); ++i) {
+      const char* names[] = {"fill", "leaky_relu.forward", "copy", "leaky_relu.forward", "copy"};
+      EXPECT_EQ(times[i].name, names[i]);
+      EXPECT_EQ(times[i].section, static_cast<int>(i + 1) / 2 - 1);
+      EXPECT_LE(last, times[i].begin);
+      EXPECT_LE(times[i].begin, times[i].end);
+      last = times[i].end;
+    }
+    EXPECT_LE(host.begin, host.submitted);
+    EXPECT_LE(host.submitted, host.end);
+  }
+  Recorder plain(test_device());
+  relu(plain, a, b);
+  EXPECT_TRUE(plain.finish()->command_times().empty());
 }
 
 TEST_F(RecorderTest, RefusesWrongBindingsAndUnknownShaders) {

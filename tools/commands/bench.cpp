@@ -11,6 +11,8 @@
 #include "tools/set_option.h"
 #include "train/benchmark.h"
 #include "train/conv_benchmark.h"
+#include "train/op_table.h"
+#include "train/peak.h"
 
 namespace vkopple {
 namespace {
@@ -20,6 +22,7 @@ struct Options {
   std::string preset = "full";
   std::vector<std::string> set;
   BenchmarkOptions benchmark;
+  std::string by_op;  ///< "shape" or "op"; empty: the short table
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
@@ -43,6 +46,58 @@ void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
   out["by_op"] = r.by_op;
 }
 
+/// Rows of the profile with their share of the machine's peak.
+struct OpTable {
+  std::vector<OpRow> rows;
+  double peak_gflops = 0;
+};
+
+OpTable table_of(const Device& device, const Options& options, const BenchmarkResult& r) {
+  return {op_table(r.passes, options.by_op == "op" ? OpRows::kByOp : OpRows::kByShape),
+          measure_peak_gflops(device)};
+}
+
+void add(nlohmann::ordered_json& out, const OpTable& table) {
+  out["peak_gflops"] = table.peak_gflops;
+  for (const OpRow& row : table.rows) {
+    out["ops"].push_back({{"op", row.op},
+                          {"pass", row.pass},
+                          {"shape", row.shape},
+                          {"count", row.count},
+                          {"seconds", row.seconds},
+                          {"share", row.share},
+                          {"gflop", row.gflop},
+                          {"gbytes", row.gbytes},
+                          {"gflops", row.gflops()},
+                          {"peak_share", row.gflops() / table.peak_gflops}});
+  }
+}
+
+void print(const OpTable& table) {
+  double seconds = 0;
+  for (const OpRow& row : table.rows) seconds += row.seconds;
+  fmt::print("  {:.2f} ms on the device in a step of its own; peak {:.0f} GFLOP/s\n", seconds * 1e3,
+             table.peak_gflops);
+  fmt::print("  {:>9} {:>7} {:>6} {:>8} {:>7} {:>8}  op\n", "ms", "share", "count", "GFLOP/s", "of peak",
+             "GB/s");
+  for (const OpRow& row : table.rows) {
+    if (row.share < 0.0005) continue;
+    const std::string work =
+        row.gflop > 0 ? fmt::format("{:>8.1f} {:>6.1f}%", row.gflops(), 100 * row.gflops() / table.peak_gflops)
+                      : fmt::format("{:>8} {:>7}", "", "");
+    fmt::print("  {:>9.2f} {:>6.1f}% {:>6} {} {:>8.1f}  {}.{} {}\n", row.seconds * 1e3, 100 * row.share,
+               row.count, work, row.gbytes / row.seconds, row.op, row.pass, row.shape);
+  }
+}
+
+void print_by_op(const BenchmarkResult& r) {
+  std::vector<std::pair<double, std::string>> ops;
+  for (const auto& [op, seconds] : r.by_op) ops.emplace_back(seconds, op);
+  std::sort(ops.rbegin(), ops.rend());
+  for (const auto& [seconds, op] : ops)
+    if (seconds > 0.002 * r.seconds_per_step) fmt::print("  {:>9.2f} ms  {}\n", seconds * 1e3, op);
+}
+
 void print(const Device& device, const Options& options, const BenchmarkResult& r) {
   std::string preset = options.preset;
   for (const std::string& assignment : options.set) preset += " with " + assignment;
@@ -55,11 +110,7 @@ void print(const Device& device, const Options& options, const BenchmarkResult& 
     fmt::print("  the authors' graph computes {:.1f} GFLOP each\n", r.authors_gflop_per_triplet);
   fmt::print("  {} MiB on the device, {} dispatches; the first step took {:.1f} s\n", r.peak_device_bytes >> 20,
              r.dispatches, r.first_step_seconds);
-  std::vector<std::pair<double, std::string>> ops;
-  for (const auto& [op, seconds] : r.by_op) ops.emplace_back(seconds, op);
-  std::sort(ops.rbegin(), ops.rend());
-  for (const auto& [seconds, op] : ops)
-    if (seconds > 0.002 * r.seconds_per_step) fmt::print("  {:>9.2f} ms  {}\n", seconds * 1e3, op);
+  if (options.by_op.empty()) print_by_op(r);
 }
 
 void print(const std::vector<ConvTiming>& timings) {
@@ -70,6 +121,10 @@ void print(const std::vector<ConvTiming>& timings) {
 }
 
 void run(const Options& options) {
+  if (!options.benchmark.profile && (!options.by_op.empty() || !options.benchmark.trace.empty()))
+    throw UsageError("--no-profile leaves nothing for --by-op and --profile to tell");
+  if (options.what == "conv" && (!options.by_op.empty() || !options.benchmark.trace.empty()))
+    throw UsageError("--by-op and --profile go with step and infer");
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
   const Device device({.selector = options.device, .kernels = options.kernels});
   nlohmann::ordered_json out = header(device, options);
@@ -95,6 +150,11 @@ void run(const Options& options) {
                                        : benchmark_inference(device, config, options.benchmark);
     add(out, result);
     if (!options.json) print(device, options, result);
+    if (!options.by_op.empty()) {
+      const OpTable table = table_of(device, options, result);
+      add(out, table);
+      if (!options.json) print(table);
+    }
   }
   if (options.json) fmt::print("{}\n", out.dump(2));
 }
@@ -118,6 +178,14 @@ void add_bench(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("!--no-profile", options->benchmark.profile,
                     "Leave out the times of single ops, which take runs of their own");
+  command
+      ->add_flag(
+          "--by-op{shape}", options->by_op,
+          "Table of the step or image by op, pass and shape, sorted by time, with the share of the peak that a "
+          "probe of multiply-adds finds; --by-op=op: without shapes")
+      ->check(CLI::IsMember({"shape", "op"}));
+  command->add_option("--profile", options->benchmark.trace,
+                      "Write a trace of a step or image, for chrome://tracing or Perfetto");
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);

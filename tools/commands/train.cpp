@@ -32,6 +32,8 @@ struct Options {
   std::optional<int> batch;
   uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
   uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
+  std::string profile;
+  int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   bool resume = false;
 };
 
@@ -83,6 +85,8 @@ void run(const Options& o) {
   trainer_options.steps = o.steps;
   trainer_options.checkpoint_every = o.checkpoint_every;
   trainer_options.eval_every = o.eval_every;
+  trainer_options.profile = o.profile;
+  trainer_options.profiled_steps = o.profiled_steps;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
   const Device device({.selector = o.device, .kernels = o.kernels});
   const Interrupt interrupt;
@@ -132,6 +136,13 @@ void add_train(CLI::App& app) {
                    "Steps between measurements of depth in unseen rooms, for the log; 0: none")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command->add_option(
+      "--profile", o->profile,
+      "Write a trace of a step, for chrome://tracing or Perfetto: every dispatch on the device, "
+      "and the host's work");
+  command->add_option("--profile-steps", o->profiled_steps, "Steps of the trace, which leaves out the first")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000));
   command->add_flag("--resume", o->resume,
                     "Go on with the run in --out, to the same bytes as if it had never stopped");
   command->add_flag_callback(

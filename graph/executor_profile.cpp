@@ -1,0 +1,73 @@
+#include "graph/executor.h"
+
+namespace vkopple {
+namespace {
+
+bool in_mask(uint32_t mask, size_t i) { return i >= 32 || (mask >> i & 1) != 0; }
+
+}  // namespace
+
+NodeProfile Executor::profile_of(const Node& node) const {
+  NodeProfile profile{.op = std::string(node.op->name()), .scope = node.scope};
+  for (int id : node.inputs) profile.inputs.push_back(graph_->info(id).spec);
+  for (int id : node.outputs) profile.outputs.push_back(graph_->info(id).spec);
+  return profile;
+}
+
+NodeProfile Executor::forward_profile(size_t n) const {
+  NodeProfile profile = profile_of(graph_->nodes()[n]);
+  profile.flop = needs_[n].forward_flop;
+  for (const auto* side : {&profile.inputs, &profile.outputs})
+    for (const TensorSpec& spec : *side) profile.bytes += spec.bytes();
+  for (const Operand& saved : node_memory_[n].saved) profile.bytes += saved.spec.bytes();
+  return profile;
+}
+
+NodeProfile Executor::backward_profile(const BackwardStep& step) const {
+  const Needs& needs = needs_[step.node];
+  NodeProfile profile = profile_of(graph_->nodes()[step.node]);
+  profile.flop = needs.backward_flop;
+  for (size_t i = 0; i < profile.inputs.size(); ++i) {
+    const uint64_t bytes = profile.inputs[i].bytes();
+    if (in_mask(needs.inputs_for_backward, i)) profile.bytes += bytes;
+    if (step.wants[i] != 0) profile.bytes += step.accumulate[i] != 0 ? 2 * bytes : bytes;
+  }
+  for (size_t i = 0; i < profile.outputs.size(); ++i)
+    profile.bytes += profile.outputs[i].bytes() * (in_mask(needs.outputs_for_backward, i) ? 2 : 1);
+  for (const Operand& saved : node_memory_[step.node].saved) profile.bytes += saved.spec.bytes();
+  return profile;
+}
+
+NodeProfile Executor::update_profile(const Node& node) const {
+  NodeProfile profile = profile_of(node);
+  for (size_t i = 0; i < profile.inputs.size(); ++i)
+    profile.bytes += profile.inputs[i].bytes() * (node.op->mutates(i) ? 2 : 1);
+  return profile;
+}
+
+std::vector<PassProfile> Executor::passes() const {
+  const auto pass = [](const char* name, const Commands& commands, const RunTimes& host, auto describe) {
+    PassProfile profile{.name = name, .host = host, .nodes = {}};
+    int last = -2;  // no command's section
+    for (const CommandTime& time : commands.command_times()) {
+      if (time.section >= 0 && time.section != last)
+        profile.nodes.push_back(describe(static_cast<size_t>(time.section)));
+      else if (time.section < 0)
+        profile.nodes.push_back({.op = time.name});
+      profile.nodes.back().commands.push_back(time);
+      last = time.section;
+    }
+    return profile;
+  };
+  std::vector<PassProfile> all;
+  all.push_back(pass("forward", *forward_, forward_ran_, [&](size_t n) { return forward_profile(n); }));
+  if (backward_)
+    all.push_back(pass("backward", *backward_, backward_ran_,
+                       [&](size_t s) { return backward_profile(backward_plan_.steps[s]); }));
+  if (update_)
+    all.push_back(
+        pass("update", *update_, update_ran_, [&](size_t n) { return update_profile(graph_->updates()[n]); }));
+  return all;
+}
+
+}  // namespace vkopple

@@ -54,6 +54,7 @@ struct Caps {
   AccessPath access = AccessPath::kStorage;
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
   KernelFamily kernels = KernelFamily::kAuto;  ///< a choice, for convolutions
+  bool winograd = true;  ///< a choice: convolutions may use Winograd's algorithm where it is faster
 
   bool cpu() const { return type == DeviceType::kCpu; }
   /// Invocations of a workgroup for kernels that treat every element alike.

@@ -19,6 +19,7 @@ struct DeviceOptions {
   MessageSink on_message;                      ///< loads the validation layer and receives what it says
   std::optional<AccessPath> access;            ///< forces an access path (tests run both)
   bool exact_sums = false;                     ///< Caps::exact_sums
+  bool winograd = true;                        ///< Caps::winograd
   KernelFamily kernels = KernelFamily::kAuto;  ///< Caps::kernels; Error where the device can't run the family
   std::filesystem::path cache_folder;          ///< of the pipeline cache; empty: default_cache_folder()
   bool use_cache = true;                       ///< false: neither reads nor writes the pipeline cache

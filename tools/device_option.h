@@ -31,4 +31,10 @@ inline void add_kernels_option(CLI::App& command, KernelFamily& kernels) {
       ->check(CLI::IsMember({"auto", "registers", "shared", "plain"}));
 }
 
+/// Adds `--no-winograd` to a command.
+inline void add_winograd_option(CLI::App& command, bool& winograd) {
+  command.add_flag("!--no-winograd", winograd,
+                   "Convolve directly even where Winograd's algorithm is faster: it rounds somewhat more");
+}
+
 }  // namespace vkopple

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 
+#include "graph/conv/convolution.h"
 #include "graph/ops/conv2d.h"
 #include "graph/ops/conv_transpose2d.h"
 #include "runtime/device.h"
@@ -18,26 +20,43 @@ namespace {
 struct Case {
   std::string name;
   TimedConvolution shape;
+  std::string kernel;
   std::shared_ptr<const Op> op;
   Shape x;
   Shape w;
+  std::optional<ConvShape> convolution;  ///< where algorithms can be chosen
 };
 
-Case plain(int64_t batch, int64_t ci, int64_t size, int64_t co, int64_t kernel, int64_t stride) {
-  return {fmt::format("{}x{}{}  {},{},{},{} -> {}", kernel, kernel, stride == 2 ? " stride 2" : "", batch, ci,
-                      size, size, co),
-          {false, kernel, stride, batch, ci, size, co},
-          std::make_shared<Conv2d>(Conv2dOptions{.stride = stride, .padding = kernel / 2}, true),
-          {batch, ci, size, size},
-          {co, ci, kernel, kernel}};
+Case plain_case(const TimedConvolution& s, const std::string& kernel) {
+  const auto op = std::make_shared<Conv2d>(
+      Conv2dOptions{.stride = s.stride, .padding = s.kernel / 2, .kernel = kernel}, true);
+  const Shape x{s.batch, s.in_channels, s.size, s.size};
+  const Shape w{s.out_channels, s.in_channels, s.kernel, s.kernel};
+  return {fmt::format("{}x{}{}  {},{},{},{} -> {}", s.kernel, s.kernel, s.stride == 2 ? " stride 2" : "",
+                      s.batch, s.in_channels, s.size, s.size, s.out_channels),
+          s,
+          kernel,
+          op,
+          x,
+          w,
+          op->shape_of(x, w)};
 }
 
-Case transposed(int64_t batch, int64_t ci, int64_t size, int64_t co, int64_t kernel) {
-  return {fmt::format("transposed {}x{}  {},{},{},{} -> {}", kernel, kernel, batch, ci, size, size, co),
-          {true, kernel, 2, batch, ci, size, co},
-          std::make_shared<ConvTranspose2d>(ConvTranspose2dOptions{}, true),
-          {batch, ci, size, size},
-          {ci, co, kernel, kernel}};
+Case transposed_case(const TimedConvolution& s, const std::string& kernel) {
+  return {fmt::format("transposed {}x{}  {},{},{},{} -> {}", s.kernel, s.kernel, s.batch, s.in_channels, s.size,
+                      s.size, s.out_channels),
+          s,
+          kernel,
+          std::make_shared<ConvTranspose2d>(ConvTranspose2dOptions{.kernel = kernel}, true),
+          {s.batch, s.in_channels, s.size, s.size},
+          {s.in_channels, s.out_channels, s.kernel, s.kernel},
+          std::nullopt};
+}
+
+/// Whether the kernel asked for can run the case.
+bool can_run(const TimedConvolution& shape, const std::string& kernel, const Caps& caps) {
+  if (shape.transposed) return is_conv_kernel(kernel) && can_run_conv_kernel(kernel, caps);
+  return can_run_convolution(kernel, *plain_case(shape, kernel).convolution, caps);
 }
 
 /// Operands of a case on the device, and the time of what is recorded on them.
@@ -58,12 +77,14 @@ class Timing {
   }
 
   ConvTiming run() {
-    const double flop = needs_.forward_flop * 1e-9;
-    ConvTiming timing{.label = case_.name, .shape = case_.shape};
-    timing.forward = flop / best([&](Recorder& r) { case_.op->record_forward(r, {x_, y_, {}, scratch_}); });
-    timing.data_gradient = flop / best([&](Recorder& r) { backward(r, {true, false, false}); });
-    timing.weight_gradient = flop / best([&](Recorder& r) { backward(r, {false, true, true}); });
-    return timing;
+    const double forward = gflops([&](Recorder& r) { case_.op->record_forward(r, {x_, y_, {}, scratch_}); });
+    const double data_gradient = gflops([&](Recorder& r) { backward(r, {true, false, false}); });
+    const double weight_gradient = gflops([&](Recorder& r) { backward(r, {false, true, true}); });
+    return {.label = case_.name,
+            .shape = case_.shape,
+            .forward = {forward, product_algorithm(ConvDirection::kForward)},
+            .data_gradient = {data_gradient, product_algorithm(ConvDirection::kTransposed)},
+            .weight_gradient = {weight_gradient, weight_gradient_algorithm()}};
   }
 
  private:
@@ -81,6 +102,21 @@ class Timing {
       if (!wanted[i]) dx[i].slice = {};
     const std::array<uint8_t, 3> accumulate{};
     case_.op->record_backward(recorder, {x_, y_, {}, dy_, dx, accumulate, scratch_});
+  }
+
+  std::string product_algorithm(ConvDirection direction) const {
+    const auto& shape = case_.convolution;
+    return std::string(name_of(shape ? choose_convolution(*shape, direction, device_.caps(), case_.kernel)
+                                     : ConvAlgorithm::kDirect));
+  }
+  std::string weight_gradient_algorithm() const {
+    const auto& shape = case_.convolution;
+    return std::string(
+        name_of(shape ? choose_weight_gradient(*shape, device_.caps(), case_.kernel) : ConvAlgorithm::kDirect));
+  }
+
+  double gflops(const std::function<void(Recorder&)>& record) {
+    return needs_.forward_flop * 1e-9 / best(record);
   }
 
   double best(const std::function<void(Recorder&)>& record) {
@@ -110,14 +146,24 @@ class Timing {
 
 }  // namespace
 
-std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats) {
-  const std::vector<Case> cases{
-      plain(batch, 64, 128, 64, 3, 1),  plain(batch, 64, 64, 64, 3, 1),   plain(batch, 128, 32, 128, 3, 1),
-      plain(batch, 256, 16, 256, 3, 1), plain(batch, 256, 8, 256, 3, 1),  plain(batch, 16, 128, 16, 3, 1),
-      plain(batch, 8, 128, 8, 3, 1),    plain(batch, 3, 128, 64, 3, 1),   plain(batch, 64, 128, 64, 3, 2),
-      plain(batch, 640, 16, 128, 1, 1), transposed(batch, 64, 64, 64, 3), transposed(batch, 32, 64, 16, 2)};
+std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats,
+                                               const std::string& kernel) {
+  const auto plain = [&](int64_t ci, int64_t size, int64_t co, int64_t taps, int64_t stride) {
+    return TimedConvolution{false, taps, stride, batch, ci, size, co};
+  };
+  const auto transposed = [&](int64_t ci, int64_t size, int64_t co, int64_t taps) {
+    return TimedConvolution{true, taps, 2, batch, ci, size, co};
+  };
   std::vector<ConvTiming> timings;
-  for (const Case& c : cases) timings.push_back(Timing(device, c, repeats).run());
+  for (const TimedConvolution& shape :
+       {plain(64, 128, 64, 3, 1), plain(64, 64, 64, 3, 1), plain(128, 32, 128, 3, 1), plain(256, 16, 256, 3, 1),
+        plain(256, 8, 256, 3, 1), plain(32, 128, 32, 3, 1), plain(16, 128, 16, 3, 1), plain(8, 128, 8, 3, 1),
+        plain(3, 128, 64, 3, 1), plain(64, 128, 64, 3, 2), plain(640, 16, 128, 1, 1), transposed(64, 64, 64, 3),
+        transposed(32, 64, 16, 2)}) {
+    if (!can_run(shape, kernel, device.caps())) continue;
+    const Case c = shape.transposed ? transposed_case(shape, kernel) : plain_case(shape, kernel);
+    timings.push_back(Timing(device, c, repeats).run());
+  }
   return timings;
 }
 

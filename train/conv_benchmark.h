@@ -20,16 +20,21 @@ struct TimedConvolution {
   int64_t out_channels = 1;
 };
 
-/// GFLOP/s of one convolution and its gradients, best of several runs, packing and reductions included.
+/// How one of a convolution's products ran, packing and reductions included.
+struct ProductTiming {
+  double gflops = 0;  ///< GFLOP/s, best of several runs; the flops are the definition's, whatever the algorithm
+  std::string algorithm;  ///< as name_of(ConvAlgorithm)
+};
+
 struct ConvTiming {
   std::string label;
   TimedConvolution shape;
-  double forward = 0;
-  double data_gradient = 0;
-  double weight_gradient = 0;
+  ProductTiming forward, data_gradient, weight_gradient;
 };
 
-/// Times the shapes that the networks are made of.
-std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats);
+/// Times the shapes that the networks are made of. `kernel` forces an algorithm (graph/conv/convolution.h) on
+/// the shapes that can run it and leaves the others out.
+std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats,
+                                               const std::string& kernel = {});
 
 }  // namespace vkopple

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "graph/checks/check.h"
-#include "graph/conv/conv_product.h"
+#include "graph/conv/convolution.h"
 
 namespace vkopple {
 namespace {
@@ -50,14 +50,17 @@ HostTensors reference(const HostTensors& in, const Conv2dOptions& o) {
 void add(CheckList& list, const Case& c) {
   std::vector<TensorSpec> inputs{channels4(c.x), row_major({c.co, c.x[1], c.kernel, c.kernel})};
   if (c.bias) inputs.push_back(row_major({c.co}));
-  list.push_back(
-      {.label = fmt::format("{} to {} channels, {} x {} stride {} padding {} dilation {} bias {} {}",
-                            c.x.text(), c.co, c.kernel, c.kernel, c.options.stride, c.options.padding,
-                            c.options.dilation, c.bias, c.options.kernel),
-       .op = std::make_shared<Conv2d>(c.options, c.bias),
-       .inputs = inputs,
-       .reference = [o = c.options](const HostTensors& x) { return reference(x, o); },
-       .runs_on = [name = c.options.kernel](const Caps& caps) { return can_run_conv_kernel(name, caps); }});
+  list.push_back({.label = fmt::format("{} to {} channels, {} x {} stride {} padding {} dilation {} bias {} {}",
+                                       c.x.text(), c.co, c.kernel, c.kernel, c.options.stride,
+                                       c.options.padding, c.options.dilation, c.bias, c.options.kernel),
+                  .op = std::make_shared<Conv2d>(c.options, c.bias),
+                  .inputs = inputs,
+                  .reference = [o = c.options](const HostTensors& x) { return reference(x, o); },
+                  .runs_on =
+                      [op = std::make_shared<Conv2d>(c.options, c.bias), c](const Caps& caps) {
+                        return can_run_convolution(c.options.kernel,
+                                                   op->shape_of(c.x, {c.co, c.x[1], c.kernel, c.kernel}), caps);
+                      }});
 }
 
 }  // namespace
@@ -86,6 +89,18 @@ void check_conv2d(CheckList& list) {
       add(list, forced);
     }
   add(list, {{1, 20, 3, 3}, 40, 3, {.padding = 1}});
+  const std::vector<Case> winograd{
+      {{1, 1, 1, 1}, 1, 3, {.padding = 1}},        {{3, 5, 1, 2}, 7, 3, {.padding = 1}},
+      {{2, 3, 5, 7}, 5, 3, {.padding = 1}},        {{1, 8, 9, 8}, 33, 3, {.padding = 1}, false},
+      {{1, 20, 4, 3}, 40, 3, {.padding = 1}},      {{1, 2, 11, 6}, 1, 3, {}},
+      {{1, 3, 4, 5}, 4, 3, {.padding = 2}, false}, {{1, 4, 3, 4}, 6, 3, {.padding = 3}},
+  };
+  for (const Case& c : winograd)
+    for (const std::string kernel : {"winograd2", "winograd4"}) {
+      Case forced = c;
+      forced.options.kernel = kernel;
+      add(list, forced);
+    }
 }
 
 }  // namespace vkopple

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "graph/conv/conv_product.h"
+#include "graph/conv/convolution.h"
 #include "graph/conv/weight_gradient.h"
 
 namespace vkopple {
@@ -33,7 +33,7 @@ ConvShape Conv2d::shape_of(const Shape& x, const Shape& w) const {
 
 std::vector<TensorSpec> Conv2d::infer(std::span<const TensorSpec> x) const {
   require(x.size() == (has_bias_ ? 3U : 2U), "takes x and weights, and a bias where it has one");
-  require(is_conv_kernel(options_.kernel), fmt::format("has no kernel named '{}'", options_.kernel));
+  require(is_convolution_kernel(options_.kernel), fmt::format("has no kernel named '{}'", options_.kernel));
   require(options_.stride == 1 || options_.stride == 2,
           fmt::format("a stride of {}; it must be 1 or 2", options_.stride));
   require(options_.padding >= 0 && options_.dilation >= 1,
@@ -57,9 +57,10 @@ std::vector<TensorSpec> Conv2d::infer(std::span<const TensorSpec> x) const {
 Needs Conv2d::needs(std::span<const TensorSpec> x, const Caps& caps) const {
   const ConvShape shape = shape_of(x[0].shape, x[1].shape);
   Needs needs;
-  needs.forward_scratch = conv_product_scratch(shape, ConvDirection::kForward);
+  needs.forward_scratch = convolution_scratch(shape, ConvDirection::kForward, caps, options_.kernel);
   needs.backward_scratch =
-      std::max(conv_product_scratch(shape, ConvDirection::kTransposed), weight_gradient_scratch(shape, caps));
+      std::max(convolution_scratch(shape, ConvDirection::kTransposed, caps, options_.kernel),
+               convolution_weight_gradient_scratch(shape, caps, options_.kernel));
   if (has_bias_)
     needs.backward_scratch = std::max(needs.backward_scratch, bias_gradient_scratch(infer(x)[0], caps));
   needs.inputs_for_backward = 0b011;
@@ -71,24 +72,25 @@ Needs Conv2d::needs(std::span<const TensorSpec> x, const Caps& caps) const {
 
 void Conv2d::record_forward(Recorder& recorder, const Forward& io) const {
   const ConvShape shape = shape_of(io.x[0].shape(), io.x[1].shape());
-  record_conv_product(recorder, shape, ConvDirection::kForward,
-                      {.in = io.x[0].slice,
-                       .w = io.x[1].slice,
-                       .bias = has_bias_ ? io.x[2].slice : Slice{},
-                       .out = io.y[0].slice},
-                      io.scratch, options_.kernel);
+  record_convolution(recorder, shape, ConvDirection::kForward,
+                     {.in = io.x[0].slice,
+                      .w = io.x[1].slice,
+                      .bias = has_bias_ ? io.x[2].slice : Slice{},
+                      .out = io.y[0].slice},
+                     io.scratch, options_.kernel);
 }
 
 void Conv2d::record_backward(Recorder& recorder, const Backward& io) const {
   const ConvShape shape = shape_of(io.x[0].shape(), io.x[1].shape());
   const Slice dy = io.dy[0].slice;
   if (io.wants(0))
-    record_conv_product(
+    record_convolution(
         recorder, shape, ConvDirection::kTransposed,
         {.in = dy, .w = io.x[1].slice, .bias = {}, .out = io.dx[0].slice, .accumulate = io.accumulates(0)},
         io.scratch, options_.kernel);
   if (io.wants(1))
-    record_weight_gradient(recorder, shape, io.x[0].slice, dy, io.dx[1].slice, io.accumulates(1), io.scratch);
+    record_convolution_weight_gradient(recorder, shape, io.x[0].slice, dy, io.dx[1].slice, io.accumulates(1),
+                                       io.scratch, options_.kernel);
   if (has_bias_ && io.wants(2))
     record_bias_gradient(recorder, io.dy[0].spec, dy, io.dx[2].slice, io.accumulates(2), io.scratch);
 }

@@ -11,7 +11,7 @@ struct Conv2dOptions {
   int64_t stride = 1;  ///< 1 or 2
   int64_t padding = 0;
   int64_t dilation = 1;
-  std::string kernel = {};  ///< forces a family of kernels (graph/conv/conv_product.h), for tests and timing
+  std::string kernel = {};  ///< forces an algorithm (graph/conv/convolution.h), for tests and timing
 };
 
 /// y[n, co, yo, xo] = b[co] + Σ ci,ky,kx  x[n, ci, yo · stride + ky · dilation − padding, …] · w[co, ci, ky,
@@ -25,10 +25,10 @@ class Conv2d : public Op {
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
-
- private:
+  /// The sizes of the convolution of an x and w that fit.
   ConvShape shape_of(const Shape& x, const Shape& w) const;
 
+ private:
   Conv2dOptions options_;
   bool has_bias_;
 };

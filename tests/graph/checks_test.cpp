@@ -48,7 +48,8 @@ TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
     // Products may be forced to a kernel by the case: those of other families run elsewhere.
     std::erase_if(checks.cases, [](const CheckCase& c) {
       const auto forced = [&](std::string_view name) { return c.label.ends_with(name); };
-      return (GetParam() != KernelFamily::kRegisters && forced(" shuffle")) ||
+      return forced(" winograd2") || forced(" winograd4") ||
+             (GetParam() != KernelFamily::kRegisters && forced(" shuffle")) ||
              (GetParam() != KernelFamily::kShared && forced(" shared")) ||
              (GetParam() != KernelFamily::kPlain && forced(" uniform"));
     });

@@ -29,8 +29,8 @@ const Device* family_device(KernelFamily family) {
   if (!missing_for(family, test_device().caps()).empty()) return nullptr;
   auto& device = devices[family];
   if (!device)
-    device = std::make_unique<Device>(
-        DeviceOptions{.selector = "", .on_message = fail_test, .kernels = family, .cache_folder = {}});
+    device = std::make_unique<Device>(DeviceOptions{
+        .selector = "", .on_message = fail_test, .winograd = false, .kernels = family, .cache_folder = {}});
   return device.get();
 }
 

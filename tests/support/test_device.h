@@ -12,7 +12,7 @@ namespace vkopple {
 const Device& test_device();
 /// The same device with convolutions that keep what their sums round off.
 const Device& exact_device();
-/// The same device made to run one family of kernels; null where it can't.
+/// The same device made to run one family of direct kernels, without Winograd's algorithm; null where it can't.
 const Device* family_device(KernelFamily family);
 /// The same device with the other access path; null where it can't have it.
 const Device* other_access_device();

@@ -23,6 +23,8 @@ struct Options {
   std::vector<std::string> set;
   BenchmarkOptions benchmark;
   std::string by_op;  ///< "shape" or "op"; empty: the short table
+  std::string algorithm;
+  bool winograd = true;
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
@@ -114,10 +116,12 @@ void print(const Device& device, const Options& options, const BenchmarkResult& 
 }
 
 void print(const std::vector<ConvTiming>& timings) {
-  fmt::print("{:<44} {:>9} {:>9} {:>9}   GFLOP/s\n", "convolution N,Ci,H,W -> Co", "forward", "d input",
+  fmt::print("{:<36} {:>18} {:>18} {:>18}   GFLOP/s\n", "convolution N,Ci,H,W -> Co", "forward", "d input",
              "d weight");
+  const auto text = [](const ProductTiming& t) { return fmt::format("{} {:>7.1f}", t.algorithm, t.gflops); };
   for (const ConvTiming& t : timings)
-    fmt::print("{:<44} {:>9.1f} {:>9.1f} {:>9.1f}\n", t.label, t.forward, t.data_gradient, t.weight_gradient);
+    fmt::print("{:<36} {:>18} {:>18} {:>18}\n", t.label, text(t.forward), text(t.data_gradient),
+               text(t.weight_gradient));
 }
 
 void run(const Options& options) {
@@ -126,10 +130,11 @@ void run(const Options& options) {
   if (options.what == "conv" && (!options.by_op.empty() || !options.benchmark.trace.empty()))
     throw UsageError("--by-op and --profile go with step and infer");
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
-  const Device device({.selector = options.device, .kernels = options.kernels});
+  const Device device({.selector = options.device, .winograd = options.winograd, .kernels = options.kernels});
   nlohmann::ordered_json out = header(device, options);
   if (options.what == "conv") {
-    const auto timings = benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats);
+    const auto timings =
+        benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats, options.algorithm);
     for (const ConvTiming& t : timings)
       out["convolutions"].push_back({{"shape", t.label},
                                      {"transposed", t.shape.transposed},
@@ -139,9 +144,12 @@ void run(const Options& options) {
                                      {"in_channels", t.shape.in_channels},
                                      {"size", t.shape.size},
                                      {"out_channels", t.shape.out_channels},
-                                     {"forward_gflops", t.forward},
-                                     {"data_gradient_gflops", t.data_gradient},
-                                     {"weight_gradient_gflops", t.weight_gradient}});
+                                     {"forward_gflops", t.forward.gflops},
+                                     {"data_gradient_gflops", t.data_gradient.gflops},
+                                     {"weight_gradient_gflops", t.weight_gradient.gflops},
+                                     {"forward_algorithm", t.forward.algorithm},
+                                     {"data_gradient_algorithm", t.data_gradient.algorithm},
+                                     {"weight_gradient_algorithm", t.weight_gradient.algorithm}});
     if (!options.json) print(timings);
   } else {
     const Config config = Config::load(options.preset, options.set);
@@ -186,6 +194,12 @@ void add_bench(CLI::App& app) {
       ->check(CLI::IsMember({"shape", "op"}));
   command->add_option("--profile", options->benchmark.trace,
                       "Write a trace of a step or image, for chrome://tracing or Perfetto");
+  command
+      ->add_option("--algorithm", options->algorithm,
+                   "winograd2 or winograd4: what conv times, on the shapes that it can run (default: the "
+                   "device's choice)")
+      ->check(CLI::IsMember({"winograd2", "winograd4"}));
+  add_winograd_option(*command, options->winograd);
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);

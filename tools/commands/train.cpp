@@ -35,6 +35,7 @@ struct Options {
   std::string profile;
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   bool resume = false;
+  bool winograd = true;
 };
 
 void set_batch(Config& config, int batch) {
@@ -88,7 +89,7 @@ void run(const Options& o) {
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
-  const Device device({.selector = o.device, .kernels = o.kernels});
+  const Device device({.selector = o.device, .winograd = o.winograd, .kernels = o.kernels});
   const Interrupt interrupt;
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
   Progress progress(trainer.plan().steps());
@@ -149,6 +150,7 @@ void add_train(CLI::App& app) {
       "--deterministic", [] {},
       "Take every sum in a fixed order, so that two runs on a device give the same bytes; the default, "
       "and so far the only way there is");
+  add_winograd_option(*command, o->winograd);
   add_device_option(*command, o->device);
   add_kernels_option(*command, o->kernels);
   command->footer(

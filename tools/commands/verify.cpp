@@ -16,6 +16,7 @@ struct Options {
   std::string fixture;
   std::string dump;
   bool plain_sums = false;
+  bool winograd = true;
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
@@ -40,8 +41,10 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
-  const Device device(
-      {.selector = options.device, .exact_sums = !options.plain_sums, .kernels = options.kernels});
+  const Device device({.selector = options.device,
+                       .exact_sums = !options.plain_sums,
+                       .winograd = options.winograd,
+                       .kernels = options.kernels});
   const ParityReport report = check_parity(device, options.fixture);
   if (!options.dump.empty()) write_safetensors(options.dump, {{"fixture", options.fixture}}, report.computed);
   if (options.json) {
@@ -69,6 +72,7 @@ void add_verify(CLI::App& app) {
       "--plain-sums", options->plain_sums,
       "Convolve with training's plain float32 sums. By default their rounding is kept and added back, so that "
       "what is compared is the formulas: with batch statistics, rounding alone moves LeakyReLU over its kink");
+  add_winograd_option(*command, options->winograd);
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);

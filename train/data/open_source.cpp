@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "runtime/error.h"
+#include "train/data/read_ahead.h"
 #include "train/rooms/room_source.h"
 
 namespace vkopple {
@@ -30,7 +31,9 @@ std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::st
     return std::make_unique<RoomSource>(device, lens, rooms, batch,
                                         parse_seed(std::string_view(data).substr(kRooms.size())));
   }
-  return std::make_unique<ShardSource>(data, lens, batch, seed, reading);
+  auto shards = std::make_unique<ShardSource>(data, lens, batch, seed, reading);
+  if (reading == Reading::kTraining) return std::make_unique<ReadAhead>(std::move(shards));
+  return shards;
 }
 
 }  // namespace vkopple

@@ -13,8 +13,8 @@ namespace vkopple {
 class Device;
 
 /// What `--data` names: "rooms:SEED" draws new rooms at every step, anything else is a shard or a folder of
-/// them. `seed`: of the order in which shards are read for training. Throws UsageError for a seed of rooms that
-/// is no number.
+/// them, read ahead for training. `seed`: of the order in which shards are read then. Throws UsageError for a
+/// seed of rooms that is no number.
 std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
                                              const RoomsConfig& rooms, int batch, uint64_t seed,
                                              Reading reading);

@@ -1,6 +1,10 @@
 // Procedural paint: solid patterns of three colours, functions of a point in the surface's own frame.
 // Patterns 0-8 repeat and have hard edges; 16-18 are octaves of smooth noise with neither. (train/rooms/scene.h: Material)
 
+// What a room's materials are: CPU devices pay for both where either may be.
+const int kAllPeriodic = 1, kAllSmooth = 2;
+layout(constant_id = 2) const int kTextures = 0;
+
 struct Material {
   vec3 colour0, colour1, colour2, phase;
   vec4 turn;   // unit quaternion, xyz w
@@ -72,5 +76,7 @@ vec3 paint(Material m, vec3 point) {
   vec3 q = p / m.period + m.phase;
   vec3 base = mix(m.colour1, m.colour0, periodic(m.pattern, q));
   vec3 hard = 0.75 * base + 0.25 * (0.5 + 0.5 * ripple(q)) * m.colour2;
+  if (kTextures == kAllPeriodic) return hard;
+  if (kTextures == kAllSmooth) return smooth_paint(m, p);
   return m.pattern >= 16 ? smooth_paint(m, p) : hard;
 }

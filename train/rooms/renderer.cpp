@@ -30,6 +30,19 @@ uint64_t image_bytes(const Device& device, const Lens& lens, int views) {
                   views, lens.width, lens.height, bytes, device.caps().name, most));
 }
 
+/// As shaders/rooms/texture.glsl counts them.
+uint32_t textures_constant(RoomTextures textures) {
+  switch (textures) {
+    case RoomTextures::kPeriodic:
+      return 1;
+    case RoomTextures::kSmooth:
+      return 2;
+    case RoomTextures::kMixed:
+      return 0;
+  }
+  return 0;
+}
+
 uint64_t scene_bytes(std::size_t objects, int views) {
   return packed_view_size(objects) * static_cast<uint64_t>(views) * sizeof(float);
 }
@@ -53,7 +66,7 @@ RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsCo
   const RaycastPush push{views, lens.height, lens.width, static_cast<int32_t>(packed_view_size(objects_) / 4),
                          static_cast<float>(lens.focal())};
   recorder.dispatch_flat("room_raycast", pixels(), {scene_.whole(), image(), depth(), label()}, push,
-                         {static_cast<uint32_t>(rooms.supersample)});
+                         {static_cast<uint32_t>(rooms.supersample), textures_constant(rooms.textures)});
   commands_ = recorder.finish();
 }
 

@@ -37,8 +37,8 @@ struct View {
 /// number of times.
 class RoomRenderer {
  public:
-  /// Every scene drawn must have as many objects as `rooms`. Throws Error where the device's memory is too
-  /// small.
+  /// Every scene drawn must have as many objects as `rooms`, and textures as it has them. Throws Error where
+  /// the device's memory is too small.
   RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views);
 
   /// Draws `views`, as many as this was made for, and waits.

@@ -21,7 +21,7 @@ def curve(points, preset, axis):
     return [p["point"][axis] for p in chosen], [p["seconds_per_triplet"] for p in chosen], chosen
 
 
-def draw(result, figure, panel, axis):
+def draw(result, panel, axis):
     # Dotted: the time of the curve's first point, were it to grow as the work does.
     for preset, colour in COLOURS.items():
         x, y, chosen = curve(result["points"], preset, axis)
@@ -40,7 +40,8 @@ def draw(result, figure, panel, axis):
     panel.minorticks_off()
     panel.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     low, high = panel.get_ylim()
-    panel.set_yticks([m * 10.0**e for e in range(-4, 3) for m in (1, 2, 5) if low <= m * 10.0**e <= high])
+    steps = (1, 2, 5) if high / low > 8 else (1, 1.5, 2, 3, 4, 5, 6, 8)
+    panel.set_yticks([m * 10.0**e for e in range(-4, 3) for m in steps if low <= m * 10.0**e <= high])
     panel.set_ylim(low, high)
     panel.grid(color="0.9")
     panel.set_xlabel(AXES[axis])
@@ -54,7 +55,7 @@ def main():
     axes = [a for a in AXES if any(p["point"]["axis"] == a for p in result["points"])]
     figure, panels = plt.subplots(1, len(axes), figsize=(3.6 * len(axes), 3.4), squeeze=False, layout="constrained")
     for axis, panel in zip(axes, panels[0]):
-        draw(result, figure, panel, axis)
+        draw(result, panel, axis)
     panels[0][0].set_ylabel("seconds a triplet")
     figure.suptitle(f"Training step on {result['device']}, {result['driver']}; {result['cpu']}, {result['threads']} threads\n"
                     "dotted: in proportion to the work", fontsize=9)

@@ -83,7 +83,8 @@ void check_conv2d(CheckList& list) {
       {{1, 2, 11, 11}, 1, 3, {}},
   };
   for (const Case& c : cases)
-    for (const std::string kernel : {"shuffle", "uniform", "shared"}) {
+    for (const std::string kernel : {"shuffle", "window", "uniform", "shared"}) {
+      if (kernel == "window" && c.options.dilation > 1) continue;
       Case forced = c;
       forced.options.kernel = kernel;
       add(list, forced);

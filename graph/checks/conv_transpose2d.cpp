@@ -62,7 +62,7 @@ void check_conv_transpose2d(CheckList& list) {
       {{1, 9, 3, 4}, 33, 3}, {{1, 6, 1, 7}, 2, 2, false}, {{3, 2, 5, 1}, 8, 3}, {{1, 8, 3, 3}, 8, 3, false},
   };
   for (const Case& c : cases)
-    for (const std::string kernel : {"shuffle", "uniform", "shared"}) add(list, c, kernel);
+    for (const std::string kernel : {"shuffle", "window", "uniform", "shared"}) add(list, c, kernel);
   add(list, {{1, 20, 3, 2}, 12, 3}, "");
 }
 

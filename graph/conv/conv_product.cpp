@@ -10,6 +10,7 @@
 #include "graph/conv/conv_push.h"
 #include "graph/conv/conv_shared.h"
 #include "graph/conv/conv_tile.h"
+#include "graph/conv/conv_window.h"
 #include "graph/tensor.h"
 #include "runtime/error.h"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr std::string_view kShuffle = "shuffle";
 constexpr std::string_view kUniform = "uniform";
 constexpr std::string_view kShared = "shared";
+constexpr std::string_view kWindow = "window";
 
 /// As conv_pack.comp has it.
 struct PackPush {
@@ -148,17 +150,20 @@ ProductPush product_push(const ConvShape& s, ConvDirection direction) {
   return push;
 }
 
-std::string_view chosen_kernel(std::string_view kernel, const Caps& caps) {
+std::string_view chosen_kernel(std::string_view kernel, const ConvShape& shape, ConvDirection direction,
+                               const Caps& caps) {
   if (kernel.empty()) {
     if (caps.kernels == KernelFamily::kPlain) return kUniform;
     if (caps.kernels == KernelFamily::kShared) return kShared;
     const bool registers = caps.cpu() || caps.kernels == KernelFamily::kRegisters;
+    if (registers && prefers_conv_window(shape, direction, caps)) return kWindow;
     if (registers) return can_run_conv_kernel(kShuffle, caps) ? kShuffle : kUniform;
     return can_run_conv_kernel(kShared, caps) ? kShared : kUniform;
   }
-  if (!can_run_conv_kernel(kernel, caps))
-    throw Error(fmt::format("convolution kernel '{}' can't run on {}; leave the choice to the device", kernel,
-                            caps.name));
+  if (!can_run_conv_kernel(kernel, caps) || (kernel == kWindow && !can_conv_window(shape, caps)))
+    throw Error(fmt::format(
+        "convolution kernel '{}' can't run a {}x{} convolution on {}; leave the choice to the device", kernel,
+        shape.kernel, shape.kernel, caps.name));
   return kernel;
 }
 
@@ -195,12 +200,13 @@ Groups groups_of(const ProductPush& push, const ConvTile& tile, int64_t lanes, c
 }  // namespace
 
 bool is_conv_kernel(std::string_view kernel) {
-  return kernel.empty() || kernel == kShuffle || kernel == kUniform || kernel == kShared;
+  return kernel.empty() || kernel == kShuffle || kernel == kUniform || kernel == kShared || kernel == kWindow;
 }
 
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
   if (kernel == kShuffle) return caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128;
   if (kernel == kShared) return can_conv_shared(caps);
+  if (kernel == kWindow) return can_conv_window(caps);
   return is_conv_kernel(kernel);
 }
 
@@ -212,12 +218,15 @@ uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
   const Caps& caps = recorder.caps();
-  const std::string_view family = chosen_kernel(kernel, caps);
+  const std::string_view family = chosen_kernel(kernel, shape, direction, caps);
   ProductPush push = product_push(shape, direction);
   if (family == kShared) return record_conv_shared(recorder, shape, direction, push, operands, scratch);
   const Packing packing(shape, direction);
   const Slice packed = scratch.sub(0, packing.bytes());
   packing.record(recorder, operands, packed);
+  if (family == kWindow)
+    return record_conv_window(recorder, shape, direction, operands, packed, packing.weight_vectors(),
+                              choose_window_tile(shape, direction, caps));
   const ConvWork work = work_of(push, channels_of(shape, direction).out,
                                 family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
   const ConvTile tile = family == kShuffle

@@ -24,6 +24,7 @@ struct ConvOperands {
 
 /// Families of kernels, by the mechanism that brings weights to invocations of the same output channels.
 ///   "shuffle"  each lane fetches 1 / 8 of the weights and hands them round the subgroup (devices of CPU type)
+///   "window"   the same, and a stretch of an input row serves all columns of the kernel (conv_window.h)
 ///   "uniform"  all lanes load the same address; runs anywhere
 ///   "shared"   a workgroup brings tiles of both operands to shared memory (GPUs; conv_shared.h)
 /// An empty name lets Caps choose.

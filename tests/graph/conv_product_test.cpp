@@ -173,10 +173,33 @@ TEST(ConvProductTest, MatchesPlainLoopsOverManyTiles) {
        .stride = 1,
        .padding = 1,
        .dilation = 1},
+      {.n = 2,
+       .ci = 40,
+       .h = 9,
+       .w = 32,
+       .co = 40,
+       .ho = 9,
+       .wo = 32,
+       .kernel = 3,
+       .stride = 1,
+       .padding = 1,
+       .dilation = 1},
+      {.n = 3,
+       .ci = 6,
+       .h = 10,
+       .w = 32,
+       .co = 24,
+       .ho = 5,
+       .wo = 16,
+       .kernel = 3,
+       .stride = 2,
+       .padding = 1,
+       .dilation = 1},
   };
   for (const ConvShape& shape : shapes)
     for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed})
-      for (const std::string kernel : {"shuffle", "uniform", "shared"}) {
+      for (const std::string kernel : {"shuffle", "window", "uniform", "shared"}) {
+        if (kernel == "window" && shape.dilation > 1) continue;
         if (!can_run_conv_kernel(kernel, test_device().caps())) {
           std::cout << "left out, the device can't run: " << kernel << "\n";
           continue;

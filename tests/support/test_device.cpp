@@ -24,13 +24,17 @@ const Device& exact_device() {
   return device;
 }
 
-const Device* family_device(KernelFamily family) {
-  static std::map<KernelFamily, std::unique_ptr<Device>> devices;
+const Device* family_device(KernelFamily family, bool exact_sums) {
+  static std::map<std::pair<KernelFamily, bool>, std::unique_ptr<Device>> devices;
   if (!missing_for(family, test_device().caps()).empty()) return nullptr;
-  auto& device = devices[family];
+  auto& device = devices[{family, exact_sums}];
   if (!device)
-    device = std::make_unique<Device>(DeviceOptions{
-        .selector = "", .on_message = fail_test, .winograd = false, .kernels = family, .cache_folder = {}});
+    device = std::make_unique<Device>(DeviceOptions{.selector = "",
+                                                    .on_message = fail_test,
+                                                    .exact_sums = exact_sums,
+                                                    .winograd = false,
+                                                    .kernels = family,
+                                                    .cache_folder = {}});
   return device.get();
 }
 

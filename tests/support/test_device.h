@@ -12,8 +12,9 @@ namespace vkopple {
 const Device& test_device();
 /// The same device with convolutions that keep what their sums round off.
 const Device& exact_device();
-/// The same device made to run one family of direct kernels, without Winograd's algorithm; null where it can't.
-const Device* family_device(KernelFamily family);
+/// The same device made to run one family of direct kernels, without Winograd's algorithm, with plain or exact
+/// sums; null where it can't.
+const Device* family_device(KernelFamily family, bool exact_sums = false);
 /// The same device with the other access path; null where it can't have it.
 const Device* other_access_device();
 

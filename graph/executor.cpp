@@ -15,26 +15,28 @@ namespace {
 
 constexpr uint64_t kBlockBytes = uint64_t{1} << 30;
 
-bool in_mask(uint32_t mask, size_t i) { return i >= 32 || (mask >> i & 1) != 0; }
-
 }  // namespace
 
 /// Decides where every tensor lies: kept ones in an arena or a group, the rest by lifetime in shared blocks.
-/// Time counts forward nodes first, then backward steps.
+/// Time counts forward nodes first, then backward steps, each of which may have nodes run again before it.
 class Executor::Layouter {
  public:
-  explicit Layouter(Executor& executor) : e_(executor), graph_(*executor.graph_) {
+  Layouter(Executor& executor, bool in_place) : e_(executor), graph_(*executor.graph_), in_place_(in_place) {
     e_.data_.resize(graph_.value_count());
     e_.gradients_.resize(graph_.value_count());
     e_.node_memory_.resize(graph_.nodes().size());
     data_life_.resize(graph_.value_count());
+    again_life_.resize(graph_.value_count());
     gradient_life_.resize(graph_.value_count());
+    e_.again_.resize(graph_.value_count());
   }
 
   void run() {
     place_kept();
     follow_forward();
     follow_backward();
+    want_roots();
+    if (in_place_) share_in_place();
     place_shared();
   }
 
@@ -48,13 +50,17 @@ class Executor::Layouter {
     }
   };
   struct Pending {
-    MemoryRequest request;
-    Slice* slice;
-    uint64_t bytes;
+    MemoryUse use;
+    std::vector<Slice*> slices;  ///< several where one takes over the bytes of another
   };
+  using Requests = std::vector<int64_t>;  ///< by root: index into pending_, or -1
 
   size_t root(int id) const { return static_cast<size_t>(graph_.info(id).root); }
-  int64_t backward_time(size_t step) const { return static_cast<int64_t>(graph_.nodes().size() + step); }
+  int64_t backward_time(size_t step) const { return again_time(step) + 1; }
+  int64_t again_time(size_t step) const { return static_cast<int64_t>(graph_.nodes().size() + 2 * step); }
+  std::string name_of(const Node& node, const std::string& part) const {
+    return fmt::format("{} {}, {}", node.scope, node.op->name(), part);
+  }
 
   void place_kept() {
     for (size_t id = 0; id < graph_.value_count(); ++id) {
@@ -84,7 +90,8 @@ class Executor::Layouter {
       const auto time = static_cast<int64_t>(n);
       for (int id : node.inputs) data_life_[root(id)].touch(time);
       for (int id : node.outputs) data_life_[root(id)].touch(time);
-      want(e_.needs_[n].forward_scratch, {time, time}, e_.node_memory_[n].forward_scratch);
+      want(name_of(node, "scratch"), e_.needs_[n].forward_scratch, {time, time},
+           e_.node_memory_[n].forward_scratch);
     }
   }
 
@@ -95,36 +102,110 @@ class Executor::Layouter {
       const Node& node = graph_.nodes()[step.node];
       const Needs& needs = e_.needs_[step.node];
       const int64_t time = backward_time(s);
+      for (size_t n : e_.recomputation_.before[s]) {
+        for (int id : graph_.nodes()[n].inputs) touch_in_backward(id, again_time(s));
+        for (int id : graph_.nodes()[n].outputs) touch_in_backward(id, again_time(s));
+      }
       for (size_t i = 0; i < node.inputs.size(); ++i) {
-        if (in_mask(needs.inputs_for_backward, i)) data_life_[root(node.inputs[i])].touch(time);
+        if (in_mask(needs.inputs_for_backward, i)) touch_in_backward(node.inputs[i], time);
         if (step.wants[i] != 0) gradient_life_[root(node.inputs[i])].touch(time);
       }
       for (size_t i = 0; i < node.outputs.size(); ++i) {
-        if (in_mask(needs.outputs_for_backward, i)) data_life_[root(node.outputs[i])].touch(time);
+        if (in_mask(needs.outputs_for_backward, i)) touch_in_backward(node.outputs[i], time);
         gradient_life_[root(node.outputs[i])].touch(time);
       }
-      want(needs.backward_scratch, {time, time}, e_.node_memory_[step.node].backward_scratch);
+      want(name_of(node, "backward scratch"), needs.backward_scratch, {time, time},
+           e_.node_memory_[step.node].backward_scratch);
       auto& saved = e_.node_memory_[step.node].saved;
       for (const TensorSpec& spec : needs.saved) saved.push_back({spec, {}});
       for (auto& operand : saved)
-        want(operand.spec.bytes(), {static_cast<int64_t>(step.node), time}, operand.slice);
+        want(name_of(node, "saved"), operand.spec.bytes(), {static_cast<int64_t>(step.node), time},
+             operand.slice);
     }
-    if (e_.loss_) gradient_life_[root(e_.loss_.id())].touch(backward_time(0));
+    // It is set before everything.
+    if (e_.loss_) gradient_life_[root(e_.loss_.id())].touch(again_time(0));
   }
 
-  void want(uint64_t bytes, Life life, Slice& slice) {
-    if (bytes > 0) pending_.push_back({{bytes, life.first, life.last}, &slice, bytes});
+  void touch_in_backward(int id, int64_t time) {
+    (e_.recomputation_.again(graph_.info(id).root) ? again_life_ : data_life_)[root(id)].touch(time);
+  }
+
+  int64_t want(std::string what, uint64_t bytes, Life life, Slice& slice) {
+    if (bytes == 0) return -1;
+    pending_.push_back({{std::move(what), bytes, life.first, life.last}, {&slice}});
+    return static_cast<int64_t>(pending_.size()) - 1;
+  }
+
+  void want_roots() {
+    std::vector<std::string> names(graph_.value_count());
+    for (const Node& node : graph_.nodes())
+      for (size_t i = 0; i < node.outputs.size(); ++i)
+        names[root(node.outputs[i])] = name_of(node, fmt::format("output {}", i));
+    const auto want_all = [&](const std::vector<Life>& lives, const char* kind, std::vector<Slice>& slices) {
+      Requests requests(graph_.value_count(), -1);
+      for (size_t id = 0; id < graph_.value_count(); ++id)
+        if (lives[id].first >= 0 && !slices[id])
+          requests[id] =
+              want(names[id] + kind, graph_.info(static_cast<int>(id)).spec.bytes(), lives[id], slices[id]);
+      return requests;
+    };
+    data_ = want_all(data_life_, "", e_.data_);
+    again_ = want_all(again_life_, ", again", e_.again_);
+    gradient_ = want_all(gradient_life_, ", gradient", e_.gradients_);
+  }
+
+  /// Lets outputs and gradients take over the bytes of what ends with the very op that makes them. In order of
+  /// time, so that a chain of such ops shares one stretch.
+  void share_in_place() {
+    for (size_t n = 0; n < graph_.nodes().size(); ++n) take_over(n, data_, static_cast<int64_t>(n));
+    const auto& steps = e_.backward_plan_.steps;
+    for (size_t s = 0; s < steps.size(); ++s) {
+      for (size_t n : e_.recomputation_.before[s]) take_over(n, again_, again_time(s));
+      take_over_gradient(steps[s], backward_time(s));
+    }
+  }
+
+  void take_over(size_t n, Requests& requests, int64_t time) {
+    const Node& node = graph_.nodes()[n];
+    const int input = node.op->in_place();
+    if (input < 0) return;
+    const int from = node.inputs[static_cast<size_t>(input)];
+    const auto reads = [&](int id) { return root(id) == root(from); };
+    if (std::count_if(node.inputs.begin(), node.inputs.end(), reads) == 1)
+      merge(from, node.outputs[0], requests, time);
+  }
+
+  void take_over_gradient(const BackwardStep& step, int64_t time) {
+    const Node& node = graph_.nodes()[step.node];
+    const int input = node.op->gradient_in_place();
+    if (input < 0 || step.wants[static_cast<size_t>(input)] == 0 ||
+        step.accumulate[static_cast<size_t>(input)] != 0)
+      return;
+    merge(node.outputs[0], node.inputs[static_cast<size_t>(input)], gradient_, time);
+  }
+
+  /// Where `to` begins as `from` ends, and they are alike and not parts of others.
+  void merge(int from, int to, Requests& requests, int64_t time) {
+    const int64_t a = requests[root(from)];
+    const int64_t b = requests[root(to)];
+    const TensorSpec& spec = graph_.info(from).spec;
+    const auto whole = [&](int id) {
+      return graph_.info(id).spec.bytes() == graph_.info(graph_.info(id).root).spec.bytes();
+    };
+    if (a < 0 || b < 0 || a == b || !(spec == graph_.info(to).spec) || !whole(from) || !whole(to)) return;
+    Pending& earlier = pending_[static_cast<size_t>(a)];
+    Pending& later = pending_[static_cast<size_t>(b)];
+    if (earlier.use.last != time || later.use.first != time) return;
+    earlier.use.last = later.use.last;
+    earlier.slices.insert(earlier.slices.end(), later.slices.begin(), later.slices.end());
+    later.slices.clear();
+    requests[root(to)] = a;
   }
 
   void place_shared() {
-    for (size_t id = 0; id < graph_.value_count(); ++id) {
-      const uint64_t bytes = graph_.info(static_cast<int>(id)).spec.bytes();
-      if (data_life_[id].first >= 0 && !e_.data_[id]) want(bytes, data_life_[id], e_.data_[id]);
-      if (gradient_life_[id].first >= 0 && !e_.gradients_[id])
-        want(bytes, gradient_life_[id], e_.gradients_[id]);
-    }
+    std::erase_if(pending_, [](const Pending& p) { return p.slices.empty(); });
     std::vector<MemoryRequest> requests;
-    for (const Pending& p : pending_) requests.push_back(p.request);
+    for (const Pending& p : pending_) requests.push_back({p.use.bytes, p.use.first, p.use.last});
     const Caps& caps = e_.device_->caps();
     const MemoryPlan plan =
         plan_memory(requests, std::min(kBlockBytes, caps.max_allocation_bytes), caps.offset_alignment);
@@ -134,16 +215,24 @@ class Executor::Layouter {
                       plan.total_bytes() >> 20, caps.name, caps.memory_bytes >> 20));
     for (uint64_t bytes : plan.block_bytes)
       e_.blocks_.push_back(std::make_unique<Buffer>(*e_.device_, bytes, MemoryKind::kDevice, "activations"));
-    for (size_t i = 0; i < pending_.size(); ++i)
-      *pending_[i].slice = {e_.blocks_[plan.placements[i].block].get(), plan.placements[i].offset,
-                            pending_[i].bytes};
+    for (size_t i = 0; i < pending_.size(); ++i) {
+      const Placement& placement = plan.placements[i];
+      for (Slice* slice : pending_[i].slices)
+        *slice = {e_.blocks_[placement.block].get(), placement.offset, pending_[i].use.bytes};
+      e_.memory_uses_.push_back(std::move(pending_[i].use));
+    }
     e_.shared_bytes_ = plan.total_bytes();
   }
 
   Executor& e_;
   const Graph& graph_;
-  std::vector<Life> data_life_;      ///< by root
-  std::vector<Life> gradient_life_;  ///< by root
+  bool in_place_;
+  std::vector<Life> data_life_;   ///< by root, as all of these
+  std::vector<Life> again_life_;  ///< of recomputed values, in backward
+  std::vector<Life> gradient_life_;
+  Requests data_;
+  Requests again_;
+  Requests gradient_;
   std::vector<Pending> pending_;
 };
 
@@ -160,7 +249,8 @@ Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
   }
   for (const auto& step : backward_plan_.steps)
     backward_flop_ += vkopple::backward_flop(graph.nodes()[step.node], step, needs_[step.node].backward_flop);
-  Layouter(*this).run();
+  recomputation_ = plan_recomputation(graph, backward_plan_, needs_, options.recompute_from);
+  Layouter(*this, options.in_place).run();
   record_forward(options.profile);
   if (loss_) record_backward(options.profile);
   if (!graph.updates().empty()) record_update(options.profile);
@@ -186,6 +276,16 @@ std::vector<Operand> Executor::operands(const std::vector<int>& values) const {
   return all;
 }
 
+std::vector<Operand> Executor::operands_in_backward(const std::vector<int>& values) const {
+  std::vector<Operand> all = operands(values);
+  for (size_t i = 0; i < values.size(); ++i) {
+    const auto& info = graph_->info(values[i]);
+    if (recomputation_.again(info.root))
+      all[i].slice = again_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes());
+  }
+  return all;
+}
+
 void Executor::record_forward(bool profile) {
   Recorder recorder(*device_, profile);
   for (size_t n = 0; n < graph_->nodes().size(); ++n) {
@@ -207,11 +307,13 @@ void Executor::record_backward(bool profile) {
   Recorder recorder(*device_, profile);
   for (int root : backward_plan_.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
   recorder.fill(gradient_operand(loss_.id()).slice, std::bit_cast<uint32_t>(1.0F));
-  for (const BackwardStep& step : backward_plan_.steps) {
+  for (size_t s = 0; s < backward_plan_.steps.size(); ++s) {
+    const BackwardStep& step = backward_plan_.steps[s];
+    for (size_t n : recomputation_.before[s]) record_again(recorder, n);
     const Node& node = graph_->nodes()[step.node];
     for (int root : step.zero_roots) recorder.fill(gradients_[static_cast<size_t>(root)]);
-    const auto x = operands(node.inputs);
-    const auto y = operands(node.outputs);
+    const auto x = operands_in_backward(node.inputs);
+    const auto y = operands_in_backward(node.outputs);
     std::vector<Operand> dy;
     std::vector<Operand> dx;
     for (int id : node.outputs) dy.push_back(gradient_operand(id));
@@ -219,12 +321,23 @@ void Executor::record_backward(bool profile) {
       dx.push_back(step.wants[i] != 0 ? gradient_operand(node.inputs[i])
                                       : Operand{graph_->info(node.inputs[i]).spec, {}});
     const NodeMemory& memory = node_memory_[step.node];
+    backward_sections_.push_back({false, s});
     recorder.begin_section();
     recorder.expect_work(needs_[step.node].backward_flop);
     node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
     recorder.end_section();
   }
   backward_ = recorder.finish();
+}
+
+void Executor::record_again(Recorder& recorder, size_t n) {
+  const Node& node = graph_->nodes()[n];
+  const auto x = operands_in_backward(node.inputs);
+  const auto y = operands_in_backward(node.outputs);
+  backward_sections_.push_back({true, n});
+  recorder.begin_section();
+  node.op->record_again(recorder, {x, y, node_memory_[n].saved, {}});
+  recorder.end_section();
 }
 
 void Executor::record_update(bool profile) {

@@ -9,7 +9,9 @@
 
 #include "graph/autodiff.h"
 #include "graph/graph.h"
+#include "graph/memory_use.h"
 #include "graph/profile.h"
+#include "graph/recompute.h"
 #include "runtime/buffer.h"
 #include "runtime/recorder.h"
 
@@ -33,10 +35,12 @@ class GroupStore {
 };
 
 struct ExecutorOptions {
-  std::shared_ptr<GroupStore> groups;  ///< null: groups of its own
-  Value loss;                          ///< none: inference, forward alone
-  std::vector<std::string> trained;    ///< parameter groups that receive gradients
-  bool profile = false;                ///< timestamps around every command
+  std::shared_ptr<GroupStore> groups;           ///< null: groups of its own
+  Value loss;                                   ///< none: inference, forward alone
+  std::vector<std::string> trained;             ///< parameter groups that receive gradients
+  bool profile = false;                         ///< timestamps around every command
+  uint64_t recompute_from = uint64_t{1} << 18;  ///< bytes from which backward recomputes what is cheap to
+  bool in_place = true;                         ///< outputs take over the bytes of inputs where ops allow it
 };
 
 /// Runs a graph on a device: places every tensor, records each pass once, replays it as often as asked.
@@ -67,6 +71,9 @@ class Executor {
   std::vector<PassProfile> passes() const;
   uint64_t shared_bytes() const { return shared_bytes_; }  ///< of activations and gradients
   uint64_t total_bytes() const;                            ///< everything on the device, groups included
+  /// Where shared memory is fullest. Less than shared_bytes, as far as stretches could not be laid without
+  /// gaps.
+  MemoryPeak memory_peak() const { return find_peak(memory_uses_); }
   double forward_flop() const { return forward_flop_; }
   double backward_flop() const { return backward_flop_; }
   size_t dispatches() const;
@@ -77,16 +84,24 @@ class Executor {
     Slice forward_scratch;
     Slice backward_scratch;
   };
+  /// A section of the backward commands: a step of the plan, or a forward node that runs again.
+  struct BackwardSection {
+    bool again;
+    size_t index;
+  };
   class Layouter;
   Operand operand(int value) const;
   Operand gradient_operand(int value) const;
   std::vector<Operand> operands(const std::vector<int>& values) const;
+  std::vector<Operand> operands_in_backward(const std::vector<int>& values) const;
   void record_forward(bool profile);
   void record_backward(bool profile);
+  void record_again(Recorder& recorder, size_t n);
   void record_update(bool profile);
   NodeProfile profile_of(const Node& node) const;
   NodeProfile forward_profile(size_t n) const;
   NodeProfile backward_profile(const BackwardStep& step) const;
+  NodeProfile section_profile(const BackwardSection& section) const;
   NodeProfile update_profile(const Node& node) const;
   void require_host_access(Value value, const char* what) const;
 
@@ -97,10 +112,14 @@ class Executor {
   std::unique_ptr<Arena> kept_;
   std::vector<std::unique_ptr<Buffer>> blocks_;
   std::vector<Slice> data_;       ///< by root value
+  std::vector<Slice> again_;      ///< by root value: where backward computes it again
   std::vector<Slice> gradients_;  ///< by root value
   std::vector<NodeMemory> node_memory_;
   std::vector<Needs> needs_;
   BackwardPlan backward_plan_;
+  Recomputation recomputation_;
+  std::vector<BackwardSection> backward_sections_;
+  std::vector<MemoryUse> memory_uses_;
   std::unique_ptr<Commands> forward_;
   std::unique_ptr<Commands> backward_;
   std::unique_ptr<Commands> update_;

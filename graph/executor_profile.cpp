@@ -1,11 +1,6 @@
 #include "graph/executor.h"
 
 namespace vkopple {
-namespace {
-
-bool in_mask(uint32_t mask, size_t i) { return i >= 32 || (mask >> i & 1) != 0; }
-
-}  // namespace
 
 NodeProfile Executor::profile_of(const Node& node) const {
   NodeProfile profile{.op = std::string(node.op->name()), .scope = node.scope};
@@ -38,6 +33,13 @@ NodeProfile Executor::backward_profile(const BackwardStep& step) const {
   return profile;
 }
 
+NodeProfile Executor::section_profile(const BackwardSection& section) const {
+  if (!section.again) return backward_profile(backward_plan_.steps[section.index]);
+  NodeProfile profile = forward_profile(section.index);
+  profile.op += " again";
+  return profile;
+}
+
 NodeProfile Executor::update_profile(const Node& node) const {
   NodeProfile profile = profile_of(node);
   for (size_t i = 0; i < profile.inputs.size(); ++i)
@@ -63,7 +65,7 @@ std::vector<PassProfile> Executor::passes() const {
   all.push_back(pass("forward", *forward_, forward_ran_, [&](size_t n) { return forward_profile(n); }));
   if (backward_)
     all.push_back(pass("backward", *backward_, backward_ran_,
-                       [&](size_t s) { return backward_profile(backward_plan_.steps[s]); }));
+                       [&](size_t s) { return section_profile(backward_sections_[s]); }));
   if (update_)
     all.push_back(
         pass("update", *update_, update_ran_, [&](size_t n) { return update_profile(graph_->updates()[n]); }));

@@ -32,6 +32,9 @@ struct Needs {
   double backward_flop = 0;
 };
 
+/// Whether a mask of Needs speaks of input or output i; those beyond its bits count as set.
+inline bool in_mask(uint32_t mask, size_t i) { return i >= 32 || (mask >> i & 1) != 0; }
+
 struct Forward {
   std::span<const Operand> x;
   std::span<const Operand> y;
@@ -78,7 +81,19 @@ class Op {
     (void)input;
     return false;
   }
+  /// The input whose bytes output 0 may take over, or -1: forward reads an element of it, if at all, before it
+  /// writes the same element of the output, and nothing later.
+  virtual int in_place() const { return -1; }
+  /// Likewise: the input whose gradient may take over the bytes of output 0's gradient where it is not added
+  /// to.
+  virtual int gradient_in_place() const { return -1; }
+  /// Whether record_again makes the (one) output again from inputs and saved tensors for less than it costs to
+  /// keep it.
+  virtual bool recomputes() const { return false; }
+
   virtual void record_forward(Recorder& recorder, const Forward& io) const = 0;
+  /// Writes the output's bytes once more during backward; has no other effect, and no scratch.
+  virtual void record_again(Recorder& recorder, const Forward& io) const { record_forward(recorder, io); }
   /// Called only where some input's gradient is wanted.
   virtual void record_backward(Recorder& recorder, const Backward& io) const = 0;
 

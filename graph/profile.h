@@ -11,7 +11,8 @@ namespace vkopple {
 
 /// One node of a graph in the last run of one pass.
 struct NodeProfile {
-  std::string op;     ///< or "fill" and "copy" for what the executor itself records between nodes
+  std::string op;  ///< with " again" where backward repeats a forward pass; or "fill" and "copy" for what the
+                   ///< executor itself records between nodes
   std::string scope;  ///< where it belongs: "depth/down1"
   std::vector<TensorSpec> inputs;
   std::vector<TensorSpec> outputs;

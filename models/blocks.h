@@ -20,7 +20,7 @@ Value down(LayerFactory& layers, Value x, const std::string& name, int64_t chann
 struct UpOptions {
   int64_t kernel = 3;     ///< of the transposed convolution
   bool residual = false;  ///< adds the upsampled tensor to the result
-  int64_t inner = 0;      ///< samples a run where the skip has fewer samples than x (see add_repeated)
+  int64_t inner = 0;      ///< samples a run where the skip serves several runs of x (see add_repeated)
 };
 
 /// u = norm(tconv(x)), cropped to the size of `level`, the tensor of the same level on the way down;

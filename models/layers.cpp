@@ -74,13 +74,14 @@ Value LayerFactory::conv_with_skip(Value skip, Value x, const std::string& name,
   const Value w = parameter(name + ".weight", shape, conv_initial(shape));
   const Value b = parameter(name + ".bias", {channels}, Initial::framework(fan_in(shape)));
   const Shape joined{x.shape()[0], shape[1], x.shape()[2], x.shape()[3]};
-  if (skip.shape()[0] == x.shape()[0] && channels4(joined).bytes() <= options_.max_tensor_bytes)
+  if (inner == 0 && channels4(joined).bytes() <= options_.max_tensor_bytes)
     return conv2d(concat({skip, x}, 1), w, b, {.padding = 1});
   // W · [skip, x] = W_s · skip + W_x · x. Where the skip is the same for every slot, its part is computed once;
   // else the device can't bind both as one.
-  const Value from_skip = conv2d(skip, slice(w, 1, 0, skip_channels), Value{}, {.padding = 1});
+  Value& from_skip = skip_parts_[{name, skip.id()}];
+  if (!from_skip) from_skip = conv2d(skip, slice(w, 1, 0, skip_channels), Value{}, {.padding = 1});
   const Value from_x = conv2d(x, slice(w, 1, skip_channels, x.shape()[1]), b, {.padding = 1});
-  return add_repeated(from_x, from_skip, inner);
+  return add_repeated(from_x, from_skip, inner > 0 ? inner : x.shape()[0]);
 }
 
 Value LayerFactory::conv_transpose(Value x, const std::string& name, int64_t channels, int64_t kernel) {

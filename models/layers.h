@@ -46,8 +46,8 @@ class LayerFactory {
   /// default.
   Value conv(Value x, const std::string& name, int64_t channels, int64_t kernel, int64_t stride = 1,
              int64_t dilation = 1, bool bias = true);
-  /// 3×3 convolution of [skip, x] with bias. `skip` may have fewer samples: see add_repeated (`inner` samples a
-  /// run).
+  /// 3×3 convolution of [skip, x] with bias. With `inner` samples a run (see add_repeated) the skip is the same
+  /// for all runs of x and for all calls with it, and its part is computed once; 0: as many samples as x has.
   Value conv_with_skip(Value skip, Value x, const std::string& name, int64_t channels, int64_t inner);
   /// Transposed convolution, doubling H and W: 2×2 or 3×3.
   Value conv_transpose(Value x, const std::string& name, int64_t channels, int64_t kernel);
@@ -78,6 +78,7 @@ class LayerFactory {
   NetworkOptions options_;
   std::vector<InitialTensor> tensors_;
   std::map<std::string, Value> by_name_;
+  std::map<std::pair<std::string, int>, Value> skip_parts_;  ///< by layer and skip
   uint32_t stream_ = 0;
 };
 

@@ -95,6 +95,16 @@ void profile_step(BenchmarkResult& result, const BenchmarkOptions& options, cons
 
 }  // namespace
 
+StepMemory measure_memory(const Device& device, const Config& config, const BenchmarkOptions& options) {
+  TrainingStage stage = find_stage(config, options.stage);
+  stage.batch = static_cast<int>(options.batch);
+  TrainingStep training(device, config, stage, nullptr);
+  const Executor& executor = training.executor();
+  return {.groups_bytes = executor.total_bytes() - executor.shared_bytes(),
+          .shared_bytes = executor.shared_bytes(),
+          .peak = executor.memory_peak()};
+}
+
 BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options) {
   TrainingStage stage = find_stage(config, options.stage);
   stage.batch = static_cast<int>(options.batch);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "graph/memory_use.h"
 #include "graph/profile.h"
 #include "models/config.h"
 
@@ -39,6 +40,14 @@ struct BenchmarkResult {
   std::map<std::string, double> by_op;  ///< seconds of device time by op and pass, as "conv2d.backward"
 };
 
+/// Where the device memory of a training step goes.
+struct StepMemory {
+  uint64_t groups_bytes = 0;  ///< parameters, gradients, optimiser and running averages, inputs and outputs
+  uint64_t shared_bytes = 0;  ///< activations, their gradients and scratch
+  MemoryPeak peak;            ///< of what is shared
+};
+/// Builds the step and runs nothing.
+StepMemory measure_memory(const Device& device, const Config& config, const BenchmarkOptions& options);
 /// A training step on made-up images: forward, backward and update.
 BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options);
 /// Depth, masks and locations of single images.

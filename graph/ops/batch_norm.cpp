@@ -88,6 +88,12 @@ void BatchNorm::record_forward(Recorder& recorder, const Forward& io) const {
   norm.record_apply(recorder, drops() ? io.x[kRandom].slice : Slice{}, io.x[kX].slice, table, io.y[0].slice);
 }
 
+void BatchNorm::record_again(Recorder& recorder, const Forward& io) const {
+  normalise(io.x[kX].shape(), recorder.caps())
+      .record_apply(recorder, drops() ? io.x[kRandom].slice : Slice{}, io.x[kX].slice, io.saved[0].slice,
+                    io.y[0].slice);
+}
+
 void BatchNorm::record_backward(Recorder& recorder, const Backward& io) const {
   const Normalise norm = normalise(io.x[kX].shape(), recorder.caps());
   const Slice coefficients = io.scratch.sub(0, norm.table().bytes());

@@ -28,7 +28,12 @@ class BatchNorm : public Op {
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool differentiable(size_t input) const override { return input < 3; }
   bool mutates(size_t input) const override { return options_.training && (input == 3 || input == 4); }
+  int in_place() const override { return 0; }
+  int gradient_in_place() const override { return 0; }
+  bool recomputes() const override { return true; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
+  /// Applies the statistics that forward saved.
+  void record_again(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 
  private:

@@ -16,6 +16,11 @@ class Binary : public Op {
   std::string_view name() const override { return "binary"; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
+  int in_place() const override { return 0; }
+  int gradient_in_place() const override {
+    return kind_ == BinaryKind::kMul ? -1 : 0;
+  }  // a product reads dy twice
+  bool recomputes() const override { return true; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 

@@ -12,6 +12,7 @@ class Crop : public Op {
   std::string_view name() const override { return "crop"; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
+  bool recomputes() const override { return true; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 

@@ -16,6 +16,9 @@ class Dropout : public Op {
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool differentiable(size_t input) const override { return input == 0; }
+  int in_place() const override { return 0; }
+  int gradient_in_place() const override { return 0; }
+  bool recomputes() const override { return true; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 

@@ -56,6 +56,12 @@ void LayerNorm::record_forward(Recorder& recorder, const Forward& io) const {
   norm.record_apply(recorder, drops() ? io.x[1].slice : Slice{}, io.x[0].slice, table, io.y[0].slice);
 }
 
+void LayerNorm::record_again(Recorder& recorder, const Forward& io) const {
+  normalise(io.x[0].shape(), recorder.caps())
+      .record_apply(recorder, drops() ? io.x[1].slice : Slice{}, io.x[0].slice, io.saved[0].slice,
+                    io.y[0].slice);
+}
+
 void LayerNorm::record_backward(Recorder& recorder, const Backward& io) const {
   const Normalise norm = normalise(io.x[0].shape(), recorder.caps());
   const Slice coefficients = io.scratch.sub(0, norm.table().bytes());

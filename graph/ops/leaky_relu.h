@@ -11,6 +11,8 @@ class LeakyRelu : public Op {
   std::string_view name() const override { return "leaky_relu"; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
+  int in_place() const override { return 0; }
+  int gradient_in_place() const override { return 0; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 

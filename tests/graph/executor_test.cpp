@@ -2,8 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "graph/ops/batch_norm.h"
+#include "graph/ops/binary.h"
 #include "graph/ops/concat.h"
+#include "graph/ops/conv2d.h"
+#include "graph/ops/image_loss.h"
 #include "graph/ops/leaky_relu.h"
+#include "graph/ops/relayout.h"
 #include "graph/ops/slice.h"
 #include "runtime/error.h"
 #include "tests/support/test_device.h"
@@ -68,6 +75,66 @@ TEST(ExecutorTest, IntermediatesShareMemory) {
   graph.keep("y", x);
   const Executor executor(test_device(), graph);
   EXPECT_LE(executor.shared_bytes(), 2U << 18);
+}
+
+/// A small residual network in which every way of saving memory occurs.
+struct Residual {
+  Graph graph;
+  Value x, loss;
+
+  Residual() {
+    x = graph.input("x", channels4({2, 8, 9, 7}));
+    const Value random = graph.state("random", "random", unsigned_ints({2}));
+    Value h = leaky_relu(x, 0.5F);
+    for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+      const Value w = graph.parameter("p", std::string(name) + ".weight", {8, 8, 3, 3});
+      const Value gamma = graph.parameter("p", std::string(name) + ".gamma", {8});
+      const Value beta = graph.parameter("p", std::string(name) + ".beta", {8});
+      const Value mean = graph.state("s", std::string(name) + ".mean", row_major({8}));
+      const Value var = graph.state("s", std::string(name) + ".var", row_major({8}));
+      const Value y = conv2d(h, w, Value{}, {.padding = 1});
+      const BatchNormOptions options{.eps = 0.1F, .slope = 0.1F, .dropout = 0.2F};
+      h = add(batch_norm(y, gamma, beta, mean, var, random, options), h);
+    }
+    loss = image_loss(to_row_major(h), graph.input("target", row_major({2, 8, 9, 7})));
+    graph.keep("loss", loss);
+  }
+};
+
+struct Step {
+  std::vector<float> loss, gradient;
+  uint64_t shared_bytes;
+};
+
+Step step(uint64_t recompute_from, bool in_place) {
+  Residual net;
+  Executor executor(
+      test_device(), net.graph,
+      {.loss = net.loss, .trained = {"p"}, .recompute_from = recompute_from, .in_place = in_place});
+  std::mt19937 random(5);
+  for (const Value& value : {net.x, net.graph.group("p")}) {
+    std::vector<float> values(static_cast<size_t>(value.shape().elements()));
+    for (float& v : values) v = static_cast<float>(random() % 2001) / 1000 - 1;
+    executor.write(value, values);
+  }
+  executor.write(net.graph.find("target"), std::vector<float>(2 * 8 * 9 * 7, 0.5F));
+  executor.write_words(net.graph.find("random"), std::vector<uint32_t>{3, 4});
+  executor.forward();
+  executor.backward();
+  return {executor.read(net.loss), executor.read(net.graph.gradient("p")), executor.shared_bytes()};
+}
+
+TEST(ExecutorTest, SavingMemoryChangesNoBit) {
+  constexpr uint64_t kNever = ~uint64_t{0};
+  const Step plain = step(kNever, false);
+  EXPECT_GT(plain.loss[0], 0.0F);
+  for (const auto& [recompute_from, in_place] :
+       std::vector<std::pair<uint64_t, bool>>{{kNever, true}, {0, false}, {0, true}}) {
+    const Step saving = step(recompute_from, in_place);
+    EXPECT_EQ(saving.loss, plain.loss);
+    EXPECT_EQ(saving.gradient, plain.gradient) << recompute_from << ", " << in_place;
+    EXPECT_LT(saving.shared_bytes, plain.shared_bytes) << recompute_from << ", " << in_place;
+  }
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::vector<float> convolved(uint64_t max_tensor_bytes) {
   const TensorSpec spec = channels4({kSamples, 4, 5, 6});
   const Value skip = graph.input("skip", spec);
   const Value x = graph.input("x", spec);
-  const Value y = layers.conv_with_skip(skip, x, "conv", 4, kSamples);
+  const Value y = layers.conv_with_skip(skip, x, "conv", 4, 0);
   graph.keep("y", y);
   for (const Node& node : graph.nodes())
     for (const int id : node.outputs)
@@ -41,6 +41,19 @@ TEST(ConvWithSkipTest, IsTakenApartWhereTheDeviceCantBindBothAsOne) {
   const auto apart = convolved(channels4({kSamples, 4, 5, 6}).bytes());
   ASSERT_EQ(joined.size(), apart.size());
   for (size_t i = 0; i < joined.size(); ++i) EXPECT_NEAR(joined[i], apart[i], 1e-5) << i;
+}
+
+TEST(ConvWithSkipTest, ComputesTheSkipsPartOnceForSeveralCalls) {
+  Graph graph;
+  LayerFactory layers(graph, {.group = "test"});
+  const TensorSpec spec = channels4({kSamples, 4, 5, 6});
+  const Value skip = graph.input("skip", spec);
+  for (const char* name : {"x", "y", "z"})
+    graph.keep(std::string("out ") + name,
+               layers.conv_with_skip(skip, graph.input(name, spec), "conv", 4, kSamples));
+  EXPECT_EQ(std::count_if(graph.nodes().begin(), graph.nodes().end(),
+                          [](const Node& node) { return node.op->name() == "conv2d"; }),
+            1 + 3);
 }
 
 }  // namespace

@@ -124,6 +124,25 @@ void print(const std::vector<ConvTiming>& timings) {
                text(t.weight_gradient));
 }
 
+void print(const StepMemory& memory) {
+  constexpr size_t kRows = 30;
+  fmt::print("{} MiB of parameters, their gradients and Adam's means; {} MiB of activations and gradients\n",
+             memory.groups_bytes >> 20, memory.shared_bytes >> 20);
+  fmt::print("of these {} MiB are in use at once, in step {}:\n", memory.peak.bytes >> 20, memory.peak.step);
+  for (size_t i = 0; i < std::min(kRows, memory.peak.held.size()); ++i)
+    fmt::print("{:>9.1f} MiB  {}\n", static_cast<double>(memory.peak.held[i].bytes) / (1 << 20),
+               memory.peak.held[i].what);
+}
+
+nlohmann::ordered_json to_json(const StepMemory& memory) {
+  nlohmann::ordered_json held = nlohmann::ordered_json::array();
+  for (const MemoryUse& use : memory.peak.held) held.push_back({{"what", use.what}, {"bytes", use.bytes}});
+  return {{"groups_bytes", memory.groups_bytes},
+          {"shared_bytes", memory.shared_bytes},
+          {"peak_bytes", memory.peak.bytes},
+          {"held_at_peak", held}};
+}
+
 void run(const Options& options) {
   if (!options.benchmark.profile && (!options.by_op.empty() || !options.benchmark.trace.empty()))
     throw UsageError("--no-profile leaves nothing for --by-op and --profile to tell");
@@ -151,6 +170,11 @@ void run(const Options& options) {
                                      {"data_gradient_algorithm", t.data_gradient.algorithm},
                                      {"weight_gradient_algorithm", t.weight_gradient.algorithm}});
     if (!options.json) print(timings);
+  } else if (options.what == "memory") {
+    const StepMemory memory =
+        measure_memory(device, Config::load(options.preset, options.set), options.benchmark);
+    out.update(to_json(memory));
+    if (!options.json) print(memory);
   } else {
     const Config config = Config::load(options.preset, options.set);
     const BenchmarkResult result = options.what == "step"
@@ -172,9 +196,9 @@ void run(const Options& options) {
 void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Time a training step, inference, or convolutions");
   const auto options = std::make_shared<Options>();
-  command->add_option("what", options->what, "step, infer or conv")
+  command->add_option("what", options->what, "step, infer, conv, or memory: what fills it in a step")
       ->required()
-      ->check(CLI::IsMember({"step", "infer", "conv"}));
+      ->check(CLI::IsMember({"step", "infer", "conv", "memory"}));
   command->add_option("--preset", options->preset, "Preset or configuration file")->capture_default_str();
   add_set_option(*command, options->set);
   command->add_option("--batch", options->benchmark.batch, "Triplets a step (images for infer)")

@@ -15,6 +15,11 @@ namespace {
 
 constexpr uint64_t kBlockBytes = uint64_t{1} << 30;
 
+Slice stored(Slice slice, const TensorSpec& spec) {
+  slice.storage = spec.storage;
+  return slice;
+}
+
 }  // namespace
 
 /// Decides where every tensor lies: kept ones in an arena or a group, the rest by lifetime in shared blocks.
@@ -221,6 +226,8 @@ class Executor::Layouter {
         *slice = {e_.blocks_[placement.block].get(), placement.offset, pending_[i].use.bytes};
       e_.memory_uses_.push_back(std::move(pending_[i].use));
     }
+    for (NodeMemory& memory : e_.node_memory_)
+      for (Operand& saved : memory.saved) saved.slice = stored(saved.slice, saved.spec);
     e_.shared_bytes_ = plan.total_bytes();
   }
 
@@ -260,14 +267,15 @@ Executor::~Executor() = default;
 
 Slice Executor::slice(Value value) const {
   const auto& info = graph_->info(value.id());
-  return data_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes());
+  return stored(data_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes()), info.spec);
 }
 
 Operand Executor::operand(int value) const { return {graph_->info(value).spec, slice({*graph_, value})}; }
 
 Operand Executor::gradient_operand(int value) const {
   const auto& info = graph_->info(value);
-  return {info.spec, gradients_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes())};
+  const Slice slice = gradients_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes());
+  return {info.spec, stored(slice, info.spec)};
 }
 
 std::vector<Operand> Executor::operands(const std::vector<int>& values) const {
@@ -281,7 +289,8 @@ std::vector<Operand> Executor::operands_in_backward(const std::vector<int>& valu
   for (size_t i = 0; i < values.size(); ++i) {
     const auto& info = graph_->info(values[i]);
     if (recomputation_.again(info.root))
-      all[i].slice = again_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes());
+      all[i].slice =
+          stored(again_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes()), info.spec);
   }
   return all;
 }

@@ -90,7 +90,7 @@ std::vector<Value> Graph::apply(std::shared_ptr<const Op> op, const std::vector<
     node.inputs.push_back(value.id());
   }
   std::vector<Value> outputs;
-  for (const TensorSpec& spec : node.op->infer(specs)) {
+  for (const TensorSpec& spec : infer_stored(*node.op, specs, activations_)) {
     node.outputs.push_back(add_value({.spec = spec}));
     outputs.emplace_back(*this, node.outputs.back());
   }
@@ -117,7 +117,8 @@ Value Graph::view(Value value, const TensorSpec& spec, uint64_t offset) {
   return {*this, add_value(std::move(made))};
 }
 
-Value Graph::reshape(Value value, const TensorSpec& spec) {
+Value Graph::reshape(Value value, const TensorSpec& wanted) {
+  const TensorSpec spec = stored_as(wanted, value.spec().storage);
   if (spec.bytes() != value.spec().bytes() || spec.dtype != value.spec().dtype)
     throw Error(fmt::format("can't reshape {} to {}", value.shape().text(), spec.shape.text()));
   return view(value, spec, 0);

@@ -70,6 +70,10 @@ class Graph {
   Graph(const Graph&) = delete;
   Graph& operator=(const Graph&) = delete;
 
+  /// How the NC4HW4 outputs of nodes added from now on are stored: network activations, and their gradients
+  /// with them. Inputs and everything row-major stay float32.
+  void store_activations(Storage storage) { activations_ = storage; }
+
   Value input(const std::string& name, const TensorSpec& spec);
   /// A learnt tensor, row-major. Throws Error for a name that exists.
   Value parameter(const std::string& group, const std::string& name, const Shape& shape);
@@ -133,6 +137,7 @@ class Graph {
   std::map<std::string, std::vector<GroupMember>> parameters_;
   std::map<std::string, std::vector<GroupMember>> states_;
   std::string scope_;
+  Storage activations_ = Storage::kFloat32;
 };
 
 /// Sets a graph's scope for a block of code, below the current one.

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "runtime/storage.h"
+
 namespace vkopple {
 
 class Device;
@@ -20,9 +22,10 @@ struct Slice {
   Buffer* buffer = nullptr;
   uint64_t offset = 0;  ///< bytes, a multiple of Caps::offset_alignment where it is bound
   uint64_t bytes = 0;
+  Storage storage = Storage::kFloat32;
 
   explicit operator bool() const { return buffer != nullptr; }
-  Slice sub(uint64_t begin, uint64_t length) const { return {buffer, offset + begin, length}; }
+  Slice sub(uint64_t begin, uint64_t length) const { return {buffer, offset + begin, length, storage}; }
   bool overlaps(const Slice& other) const {
     return buffer == other.buffer && offset < other.offset + other.bytes && other.offset < offset + bytes;
   }

@@ -12,6 +12,7 @@ namespace {
 /// Specialization constants that access.glsl and subgroup.glsl may use in any shader.
 constexpr uint32_t kZeroOutsideId = 100;
 constexpr uint32_t kSubgroupSizeId = 101;
+constexpr uint32_t kFloat16BindingsId = 102;
 constexpr uint32_t kPushConstantBytes = 128;
 
 VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
@@ -53,13 +54,14 @@ PipelineSet::~PipelineSet() {
   vkDestroyPipelineCache(device, cache_, nullptr);
 }
 
-const Pipeline& PipelineSet::get(std::string_view shader, const std::vector<uint32_t>& constants) {
-  const auto [entry, added] = pipelines_.try_emplace(Key{std::string(shader), constants});
+const Pipeline& PipelineSet::get(std::string_view shader, const std::vector<uint32_t>& constants,
+                                 uint32_t float16_bindings) {
+  const auto [entry, added] = pipelines_.try_emplace(Key{std::string(shader), constants, float16_bindings});
   if (added) {
     try {
       entry->second.shader = &find_shader(shader, device_->caps().access);
       entry->second.bindings = binding_kinds(*entry->second.shader);
-      create(entry->second, constants);
+      create(entry->second, entry->first);
     } catch (...) {
       pipelines_.erase(entry);
       throw;
@@ -95,17 +97,18 @@ void PipelineSet::create_layouts(Pipeline& pipeline) const {
         "vkCreatePipelineLayout");
 }
 
-void PipelineSet::create(Pipeline& pipeline, const std::vector<uint32_t>& constants) {
+void PipelineSet::create(Pipeline& pipeline, const Key& key) {
   create_layouts(pipeline);
-  std::vector<uint32_t> values = constants;
-  values.push_back(device_->caps().lavapipe ? 1 : 0);
-  values.push_back(device_->caps().subgroup_size);
+  std::vector<uint32_t> values;
   std::vector<VkSpecializationMapEntry> entries;
-  for (uint32_t i = 0; i < values.size(); ++i) {
-    const auto own = static_cast<uint32_t>(constants.size());
-    const uint32_t id = i < own ? i : (i == own ? kZeroOutsideId : kSubgroupSizeId);
-    entries.push_back({id, i * 4, 4});
-  }
+  const auto set = [&](uint32_t id, uint32_t value) {
+    entries.push_back({id, static_cast<uint32_t>(values.size() * 4), 4});
+    values.push_back(value);
+  };
+  for (uint32_t id = 0; id < key.constants.size(); ++id) set(id, key.constants[id]);
+  set(kZeroOutsideId, device_->caps().lavapipe ? 1 : 0);
+  set(kSubgroupSizeId, device_->caps().subgroup_size);
+  set(kFloat16BindingsId, key.float16_bindings);
   VkSpecializationInfo specialization{};
   specialization.mapEntryCount = static_cast<uint32_t>(entries.size());
   specialization.pMapEntries = entries.data();

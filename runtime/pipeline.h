@@ -36,17 +36,20 @@ class PipelineSet {
   PipelineSet& operator=(const PipelineSet&) = delete;
 
   /// constants[i] sets constant_id i; id 0 is the workgroup's size in x. The device's facts (access.glsl, ids
-  /// from 100) are added. Throws Error for an unknown shader.
-  const Pipeline& get(std::string_view shader, const std::vector<uint32_t>& constants);
+  /// from 100) are added. float16_bindings: bit b where binding b holds float16. Throws Error for an unknown
+  /// shader.
+  const Pipeline& get(std::string_view shader, const std::vector<uint32_t>& constants,
+                      uint32_t float16_bindings = 0);
   size_t size() const { return pipelines_.size(); }
 
  private:
   struct Key {
     std::string shader;
     std::vector<uint32_t> constants;
+    uint32_t float16_bindings;
     auto operator<=>(const Key&) const = default;
   };
-  void create(Pipeline& pipeline, const std::vector<uint32_t>& constants);
+  void create(Pipeline& pipeline, const Key& key);
   void create_layouts(Pipeline& pipeline) const;
 
   const Device* device_;

@@ -31,6 +31,19 @@ constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK
 constexpr VkAccessFlags kWritten = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
 constexpr VkAccessFlags kUsed = kWritten | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
 
+VkFormat texel_format(bool wide, Storage storage) {
+  if (!wide) return VK_FORMAT_R32_SFLOAT;
+  return storage == Storage::kFloat16 ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+}
+
+/// Bit b: binding b holds float16.
+uint32_t float16_mask(std::span<const Slice> bindings) {
+  uint32_t mask = 0;
+  for (size_t i = 0; i < bindings.size(); ++i)
+    if (bindings[i].storage == Storage::kFloat16) mask |= 1U << i;
+  return mask;
+}
+
 }  // namespace
 
 Recorder::Recorder(const Device& device, bool timestamps)
@@ -148,10 +161,10 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
   const auto& kinds = pipeline.bindings;
   std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
   std::vector<VkBufferView> views(bindings.size());
-  std::vector<VkWriteDescriptorSet> writes(bindings.size());
+  std::vector<VkWriteDescriptorSet> sets(bindings.size());
   for (uint32_t i = 0; i < bindings.size(); ++i) {
-    const Slice slice = bindings[i] ? bindings[i] : commands_->absent(kinds[i] == BindingKind::kWrite);
-    auto& write = writes[i];
+    const Slice slice = bindings[i] ? bindings[i] : commands_->absent(writes(kinds[i]));
+    auto& write = sets[i];
     write = {};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
     write.dstSet = set;
@@ -161,9 +174,9 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
     if (reads && pipeline.shader->access == AccessPath::kTexel) {
       const bool wide = kinds[i] == BindingKind::kRead4;
       write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-      const uint64_t bytes = wide ? slice.bytes / 16 * 16 : slice.bytes;
+      const uint64_t element = element_bytes(slice.storage) * (wide ? 4 : 1);
       views[i] =
-          slice.buffer->view(wide ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_R32_SFLOAT, slice.offset, bytes);
+          slice.buffer->view(texel_format(wide, slice.storage), slice.offset, slice.bytes / element * element);
       write.pTexelBufferView = &views[i];
     } else {
       write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -171,13 +184,13 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
       write.pBufferInfo = &buffers[i];
     }
   }
-  vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(writes.size()), writes.data(), 0, nullptr);
+  vkUpdateDescriptorSets(device_->handle(), static_cast<uint32_t>(sets.size()), sets.data(), 0, nullptr);
   return set;
 }
 
 void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& constants,
                         std::span<const Slice> bindings, const Push& push, Groups groups) {
-  const Pipeline& pipeline = device_->pipelines().get(shader, constants);
+  const Pipeline& pipeline = device_->pipelines().get(shader, constants, float16_mask(bindings));
   const auto& kinds = pipeline.bindings;
   if (bindings.size() != kinds.size())
     throw Error(fmt::format("shader {} has {} bindings, {} were given", shader, kinds.size(), bindings.size()));
@@ -190,11 +203,11 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
                       shader, groups[i], caps().name, caps().max_groups[i]));
   }
   std::vector<Slice> reads;
-  std::vector<Slice> writes;
+  std::vector<Slice> written;
   for (size_t i = 0; i < bindings.size(); ++i) {
     if (!bindings[i]) {
       // Two kernels that may write the absent operand are ordered like any others.
-      if (kinds[i] == BindingKind::kWrite) writes.push_back(commands_->absent(true));
+      if (writes(kinds[i])) written.push_back(commands_->absent(true));
       continue;
     }
     if (bindings[i].bytes > caps().max_storage_range)
@@ -202,9 +215,13 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
           fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; use a smaller --batch or "
                       "image size",
                       shader, i, bindings[i].bytes >> 20, caps().name, caps().max_storage_range >> 20));
-    (kinds[i] == BindingKind::kWrite ? writes : reads).push_back(bindings[i]);
+    if (bindings[i].storage == Storage::kFloat16 && !takes_float16(kinds[i]))
+      throw Error(fmt::format(
+          "shader {}: operand {} is float16, which is read and written by vectors of four channels only",
+          shader, i));
+    (writes(kinds[i]) ? written : reads).push_back(bindings[i]);
   }
-  order(reads, writes);
+  order(reads, written);
   const VkDescriptorSet set = make_set(pipeline, bindings);
   vkCmdBindPipeline(buffer_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.pipeline);
   vkCmdBindDescriptorSets(buffer_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0, nullptr);
@@ -235,6 +252,7 @@ void Recorder::fill(const Slice& slice, uint32_t word) {
 }
 
 void Recorder::copy(const Slice& from, const Slice& to) {
+  if (from.storage != to.storage) throw Error("a copy between float32 and float16 was recorded");
   if (from.bytes != to.bytes)
     throw Error(fmt::format("a copy of {} bytes into {} bytes was recorded", from.bytes, to.bytes));
   order(std::span(&from, 1), std::span(&to, 1));

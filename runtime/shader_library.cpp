@@ -22,7 +22,7 @@ struct Reflection {
   std::map<uint32_t, std::string> names;       ///< by id
   std::map<uint32_t, uint32_t> pointees;       ///< pointer type → type
   std::map<uint32_t, uint32_t> pointer_types;  ///< variable → pointer type
-  std::map<uint32_t, uint32_t> variables;      ///< binding number → variable
+  std::map<uint32_t, uint32_t> variables;      ///< binding number → one of its variables
 
   explicit Reflection(std::span<const uint32_t> code) {
     for (size_t at = kHeaderWords; at < code.size();) {
@@ -62,6 +62,8 @@ std::vector<BindingKind> binding_kinds(const ShaderCode& shader) {
       kinds.push_back(BindingKind::kRead1);
     else if (name.ends_with("_ru"))
       kinds.push_back(BindingKind::kReadU);
+    else if (name.ends_with("_w4"))
+      kinds.push_back(BindingKind::kWrite4);
     else if (name.ends_with("_w"))
       kinds.push_back(BindingKind::kWrite);
     else

@@ -11,11 +11,18 @@ namespace vkopple {
 
 /// How a shader uses one binding, as its macro (shaders/include/access.glsl) says.
 enum class BindingKind : uint8_t {
-  kRead4,  ///< READ4: vec4 elements; a texel view or a storage buffer
-  kRead1,  ///< READ1: float elements; likewise
-  kReadU,  ///< READU: uint elements of a storage buffer
-  kWrite,  ///< WRITE4, WRITE1, WRITEU: a storage buffer, read too where the kernel accumulates
+  kRead4,   ///< READ4: vec4 elements; a texel view or a storage buffer
+  kRead1,   ///< READ1: float elements; likewise
+  kReadU,   ///< READU: uint elements of a storage buffer
+  kWrite4,  ///< WRITE4: vec4 elements of a storage buffer, read too where the kernel accumulates
+  kWrite,   ///< WRITE1, WRITEU: likewise, elements of 32 bits
 };
+
+inline bool writes(BindingKind kind) { return kind == BindingKind::kWrite4 || kind == BindingKind::kWrite; }
+/// Whether the operand may hold float16.
+inline bool takes_float16(BindingKind kind) {
+  return kind == BindingKind::kRead4 || kind == BindingKind::kWrite4;
+}
 
 /// One compiled shader of the program. `name` is the file's stem, with ".variant" where the file has variants.
 struct ShaderCode {

@@ -6,9 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <random>
 
+#include "graph/float16.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "runtime/transfer.h"
@@ -19,7 +19,8 @@ namespace {
 /// Most elements of one input whose derivative is taken numerically; larger tensors are sampled.
 constexpr size_t kMostProbes = 240;
 constexpr double kStep = 1e-5;
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+/// NaN as float32, and as two float16.
+const float kNaN = std::bit_cast<float>(0x7fff7fffU);
 
 std::vector<float> as_words(const TensorSpec& spec, const HostTensor& tensor) {
   std::vector<float> words(tensor.values.size());
@@ -64,16 +65,21 @@ Deviation compare(const std::vector<double>& got, const std::vector<double>& wan
 
 class Bench {
  public:
-  Bench(const Device& device, const CheckCase& check)
-      : device_(device), check_(check), op_(*check.op), arena_(device, MemoryKind::kDevice, "check") {
+  Bench(const Device& device, const CheckCase& check, Storage activations)
+      : device_(device),
+        check_(check),
+        op_(*check.op),
+        activations_(activations),
+        arena_(device, MemoryKind::kDevice, "check") {
+    for (const TensorSpec& spec : check.inputs) inputs_.push_back(stored_as(spec, activations));
     result_.op = op_.name();
     result_.label = check.label;
   }
 
   CheckResult run() {
     draw_inputs();
-    specs_ = op_.infer(check_.inputs);
-    needs_ = op_.needs(check_.inputs, device_.caps());
+    specs_ = infer_stored(op_, inputs_, activations_);
+    needs_ = op_.needs(inputs_, device_.caps());
     run_forward();
     const bool any = std::any_of(wanted_.begin(), wanted_.end(), [](bool w) { return w; });
     if (any) run_backward();
@@ -84,19 +90,27 @@ class Bench {
   void draw_inputs() {
     std::mt19937 random(1234);
     for (size_t i = 0; i < check_.inputs.size(); ++i) {
-      HostTensor tensor(check_.inputs[i].shape);
+      HostTensor tensor(inputs_[i].shape);
       const auto range = i < check_.ranges.size() ? check_.ranges[i] : std::pair(-1.0, 1.0);
       for (double& v : tensor.values) v = uniform(random, range.first, range.second);
       x_.push_back(std::move(tensor));
-      wanted_.push_back(op_.differentiable(i) && check_.inputs[i].dtype == DType::kF32);
+      wanted_.push_back(op_.differentiable(i) && inputs_[i].dtype == DType::kF32);
     }
     if (check_.prepare) check_.prepare(x_);
-    for (HostTensor& tensor : x_)
-      for (double& v : tensor.values) v = static_cast<double>(static_cast<float>(v));
+    for (size_t i = 0; i < x_.size(); ++i) round(inputs_[i], x_[i]);
+  }
+
+  /// To what the tensor can hold.
+  static void round(const TensorSpec& spec, HostTensor& tensor) {
+    for (double& v : tensor.values) {
+      const auto single = static_cast<float>(v);
+      v = static_cast<double>(spec.storage == Storage::kFloat16 ? float16_value(float16_bits(single)) : single);
+    }
   }
 
   Operand place(const TensorSpec& spec) {
-    const Operand operand{spec, arena_.allocate(spec.bytes())};
+    Operand operand{spec, arena_.allocate(spec.bytes())};
+    operand.slice.storage = spec.storage;
     write(operand, std::vector<float>(spec.bytes() / 4, kNaN));
     return operand;
   }
@@ -109,12 +123,22 @@ class Bench {
     return place(row_major({static_cast<int64_t>((bytes + 3) / 4)})).slice;
   }
 
+  static int roundings_of(const TensorSpec& spec) { return spec.storage == Storage::kFloat16 ? 1 : 0; }
+  /// Whether backward reads outputs that forward rounded.
+  int output_roundings() const {
+    for (size_t i = 0; i < specs_.size() && i < 32; ++i)
+      if (specs_[i].storage == Storage::kFloat16 && (needs_.outputs_for_backward >> i & 1) != 0) return 1;
+    return 0;
+  }
+
   void fail(const std::string& message) { result_.failures.push_back(message); }
 
+  /// roundings: how often float16 may have rounded what is judged.
   void judge(Deviation& total, const std::string& what, const std::vector<double>& got,
-             const std::vector<double>& want) {
+             const std::vector<double>& want, int roundings) {
     const Deviation d = compare(got, want);
-    if (!(d.worst <= kWorstLimit && d.l2 <= kL2Limit)) {
+    const double rounded = kFloat16Limit * roundings;
+    if (!(d.worst <= kWorstLimit + rounded && d.l2 <= kL2Limit + rounded)) {
       size_t at = 0;
       for (size_t i = 0; i < want.size(); ++i)
         if (!(std::abs(got[i] - want[i]) <= std::abs(got[at] - want[at]))) at = i;
@@ -127,18 +151,20 @@ class Bench {
 
   void require_zero_padding(const std::string& what, const Operand& operand) {
     if (operand.spec.layout != Layout::kChannels4) return;
-    const auto stored = read(operand);
-    const auto again = to_layout(operand.spec, from_layout(operand.spec, stored));
+    const auto words = read(operand);
+    const TensorSpec plain = stored_as(operand.spec, Storage::kFloat32);
+    const auto stored = operand.spec.storage == Storage::kFloat16 ? from_float16(words) : words;
+    const auto again = to_layout(plain, from_layout(plain, stored));
     for (size_t i = 0; i < stored.size(); ++i)
       if (!(stored[i] == again[i]) && again[i] == 0.0F) {
-        fail(fmt::format("{}: padding lane at word {} holds {}, not zero", what, i,
+        fail(fmt::format("{}: padding lane at element {} holds {}, not zero", what, i,
                          static_cast<double>(stored[i])));
         return;
       }
   }
 
   void run_forward() {
-    for (size_t i = 0; i < x_.size(); ++i) input_.push_back(place(check_.inputs[i]));
+    for (size_t i = 0; i < x_.size(); ++i) input_.push_back(place(inputs_[i]));
     for (const TensorSpec& spec : specs_) output_.push_back(place(spec));
     const HostTensors want = check_.reference(x_);
     if (!needs_.saved.empty()) {
@@ -153,7 +179,7 @@ class Bench {
   }
 
   void record_forward(const std::vector<Operand>& saved) {
-    for (size_t i = 0; i < x_.size(); ++i) write(input_[i], as_words(check_.inputs[i], x_[i]));
+    for (size_t i = 0; i < x_.size(); ++i) write(input_[i], as_words(inputs_[i], x_[i]));
     for (const Operand& y : output_) write(y, std::vector<float>(y.spec.bytes() / 4, kNaN));
     Recorder recorder(device_);
     op_.record_forward(recorder, {input_, output_, saved, scratch(needs_.forward_scratch)});
@@ -164,14 +190,16 @@ class Bench {
     size_t next = 0;
     for (const Operand& y : output_) {
       const std::string what = fmt::format("{}output {}", mode, next);
-      judge(result_.forward, what, from_words(y.spec, read(y)).values, want.at(next).values);
+      judge(result_.forward, what, from_words(y.spec, read(y)).values, want.at(next).values,
+            roundings_of(y.spec));
       require_zero_padding(what, y);
       ++next;
     }
     for (size_t i = 0; i < x_.size(); ++i)
       if (op_.mutates(i))
         judge(result_.forward, fmt::format("{}updated input {}", mode, i),
-              from_words(input_[i].spec, read(input_[i])).values, want.at(next++).values);
+              from_words(input_[i].spec, read(input_[i])).values, want.at(next++).values,
+              roundings_of(input_[i].spec));
   }
 
   /// The scalar sum of r · y whose gradient is checked; r is fixed.
@@ -215,7 +243,8 @@ class Bench {
     std::mt19937 random(77);
     for (const Operand& y : output_) {
       HostTensor r(y.spec.shape);
-      for (double& v : r.values) v = static_cast<double>(static_cast<float>(uniform(random, -1, 1)));
+      for (double& v : r.values) v = uniform(random, -1, 1);
+      round(y.spec, r);
       dy_.push_back(place(y.spec));
       write(dy_.back(), as_words(y.spec, r));
       cotangent_.push_back(std::move(r));
@@ -223,7 +252,7 @@ class Bench {
     poison_unneeded();
     std::vector<Operand> dx;
     for (size_t i = 0; i < x_.size(); ++i)
-      dx.push_back(wanted_[i] ? place(check_.inputs[i]) : Operand{check_.inputs[i], {}});
+      dx.push_back(wanted_[i] ? place(inputs_[i]) : Operand{inputs_[i], {}});
     record_backward(dx, 0);
     std::vector<HostTensor> first;
     for (size_t i = 0; i < x_.size(); ++i) {
@@ -249,7 +278,8 @@ class Bench {
       want.push_back((up - down) / (2 * kStep));
       have.push_back(got.values[at]);
     }
-    judge(result_.backward, fmt::format("gradient {}", input), have, want);
+    judge(result_.backward, fmt::format("gradient {}", input), have, want,
+          roundings_of(inputs_[input]) + output_roundings());
   }
 
   void check_accumulation(const std::vector<Operand>& dx, const std::vector<HostTensor>& first) {
@@ -259,7 +289,8 @@ class Bench {
       before.emplace_back();
       if (!wanted_[i]) continue;
       before[i] = HostTensor(dx[i].spec.shape);
-      for (double& v : before[i].values) v = static_cast<double>(static_cast<float>(uniform(random, -1, 1)));
+      for (double& v : before[i].values) v = uniform(random, -1, 1);
+      round(dx[i].spec, before[i]);
       write(dx[i], as_words(dx[i].spec, before[i]));
     }
     record_backward(dx, 1);
@@ -267,13 +298,15 @@ class Bench {
       if (!wanted_[i]) continue;
       for (size_t k = 0; k < before[i].values.size(); ++k) before[i].values[k] += first[i].values[k];
       judge(result_.backward, fmt::format("accumulated gradient {}", i),
-            from_words(dx[i].spec, read(dx[i])).values, before[i].values);
+            from_words(dx[i].spec, read(dx[i])).values, before[i].values, 2 * roundings_of(dx[i].spec));
     }
   }
 
   const Device& device_;
   const CheckCase& check_;
   const Op& op_;
+  Storage activations_;
+  std::vector<TensorSpec> inputs_;
   Arena arena_;
   CheckResult result_;
   HostTensors x_;
@@ -289,11 +322,20 @@ class Bench {
 
 }  // namespace
 
-CheckResult run_check(const Device& device, const CheckCase& check) {
+bool has_activations(const CheckCase& check) {
+  const auto is_activation = [](const TensorSpec& spec) {
+    return stored_as(spec, Storage::kFloat16).storage == Storage::kFloat16;
+  };
+  const auto outputs = check.op->infer(check.inputs);
+  return std::any_of(check.inputs.begin(), check.inputs.end(), is_activation) ||
+         std::any_of(outputs.begin(), outputs.end(), is_activation);
+}
+
+CheckResult run_check(const Device& device, const CheckCase& check, Storage activations) {
   CheckResult failed{
       .op = std::string(check.op->name()), .label = check.label, .forward = {}, .backward = {}, .failures = {}};
   try {
-    return Bench(device, check).run();
+    return Bench(device, check, activations).run();
   } catch (const std::exception& error) {
     failed.failures.emplace_back(error.what());
     return failed;

@@ -79,10 +79,19 @@ struct CheckResult {
 constexpr double kWorstLimit = 1e-3;
 constexpr double kL2Limit = 1e-4;
 
+/// In float16 storage a normal number is off by up to the unit round-off, 2^-11 of it, so that a tensor's error
+/// grows by no more in either measure. Gradients read the outputs that forward rounded, and an accumulated one
+/// is rounded twice: as what is compared with, and as the sum.
+constexpr double kFloat16Limit = 1.0 / 2048;
+
+/// Whether an op has NC4HW4 operands, which mixed precision stores as float16.
+bool has_activations(const CheckCase& check);
+
 /// Runs one case: outputs pre-filled with NaN, forward against the reference (and without saved tensors, as in
 /// inference), padding lanes zero, gradients against finite differences, then backward again onto existing
 /// gradients with the accumulate flag, expecting the sum.
-CheckResult run_check(const Device& device, const CheckCase& check);
+/// `activations`: how NC4HW4 tensors are stored; inputs are rounded to it before the reference sees them.
+CheckResult run_check(const Device& device, const CheckCase& check, Storage activations = Storage::kFloat32);
 
 /// An op and its cases; the build finds graph/checks/<op>.cpp, which defines `void check_<op>(CheckList&)`.
 struct OpChecks {

@@ -14,7 +14,7 @@ struct AddScaledPush {
 }  // namespace
 
 void add_scaled(Recorder& recorder, const Operand& from, const Operand& to, float scale, bool accumulate) {
-  if (scale == 1.0F && !accumulate) {
+  if (scale == 1.0F && !accumulate && from.spec.storage == to.spec.storage) {
     if (to.slice.overlaps(from.slice)) return;  // in place: it is there already
     recorder.copy(from.slice, to.slice);
     return;

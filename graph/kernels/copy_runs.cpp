@@ -18,8 +18,9 @@ struct CopyRunsPush {
 }  // namespace
 
 void copy_runs(Recorder& recorder, const Slice& from, const Slice& to, const Runs& r, bool accumulate) {
-  if (r.count == 1 && !accumulate) {
-    recorder.copy(from.sub(r.from_begin * 4, r.run * 4), to.sub(r.to_begin * 4, r.run * 4));
+  if (r.count == 1 && !accumulate && from.storage == to.storage) {
+    const uint64_t bytes = element_bytes(from.storage);
+    recorder.copy(from.sub(r.from_begin * bytes, r.run * bytes), to.sub(r.to_begin * bytes, r.run * bytes));
     return;
   }
   const bool wide = (r.run | r.from_stride | r.from_begin | r.to_stride | r.to_begin) % 4 == 0;

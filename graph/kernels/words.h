@@ -8,8 +8,8 @@ namespace vkopple {
 inline uint32_t u32(int64_t size) { return static_cast<uint32_t>(size); }
 inline uint32_t u32(uint64_t size) { return static_cast<uint32_t>(size); }
 
-/// 32-bit words that a tensor takes, padding included.
-inline uint32_t words(const TensorSpec& spec) { return u32(spec.bytes() / 4); }
+/// Elements that a tensor takes, padding included: 32-bit words, or half of one each in float16.
+inline uint32_t words(const TensorSpec& spec) { return u32(spec.elements()); }
 inline uint32_t words(const Operand& operand) { return words(operand.spec); }
 
 /// What kernels that treat words alike must know of padding: vec4 number i belongs to channel block

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "graph/kernels/words.h"
+
 namespace vkopple {
 namespace {
 
@@ -36,8 +38,7 @@ Needs Dropout::needs(std::span<const TensorSpec>, const Caps&) const {
 void Dropout::record(Recorder& recorder, const Operand& from, const Operand& random, const Operand& to,
                      uint32_t accumulate) const {
   const DropoutRate rate(rate_);
-  const DropoutPush push{static_cast<uint32_t>(from.spec.bytes() / 4), stream_, rate.threshold, rate.scale,
-                         accumulate};
+  const DropoutPush push{words(from), stream_, rate.threshold, rate.scale, accumulate};
   // Whole vectors where the size allows; the unused binding of x stays empty.
   const bool vectors = push.words % 4 == 0;
   const Slice none;

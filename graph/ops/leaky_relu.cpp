@@ -1,15 +1,15 @@
 #include "graph/ops/leaky_relu.h"
 
+#include "graph/kernels/words.h"
+
 namespace vkopple {
 namespace {
 
 struct LeakyReluPush {
-  uint32_t words;
+  uint32_t units;  ///< words, or vec4s where they are whole
   float slope;
   uint32_t accumulate;
 };
-
-uint32_t words_of(const Operand& operand) { return static_cast<uint32_t>(operand.spec.bytes() / 4); }
 
 }  // namespace
 
@@ -24,13 +24,16 @@ Needs LeakyRelu::needs(std::span<const TensorSpec>, const Caps&) const {
 }
 
 void LeakyRelu::record_forward(Recorder& recorder, const Forward& io) const {
-  const LeakyReluPush push{words_of(io.x[0]), slope_, 0};
-  recorder.dispatch_flat("leaky_relu.forward", (push.words + 3) / 4, {io.x[0].slice, io.y[0].slice}, push);
+  const bool wide = words(io.y[0]) % 4 == 0;
+  const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, 0};
+  recorder.dispatch_flat(wide ? "leaky_relu.forward4" : "leaky_relu.forward", (push.units + 3) / 4,
+                         {io.x[0].slice, io.y[0].slice}, push);
 }
 
 void LeakyRelu::record_backward(Recorder& recorder, const Backward& io) const {
-  const LeakyReluPush push{words_of(io.y[0]), slope_, io.accumulates(0)};
-  recorder.dispatch_flat("leaky_relu.backward", (push.words + 3) / 4,
+  const bool wide = words(io.y[0]) % 4 == 0;
+  const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, io.accumulates(0)};
+  recorder.dispatch_flat(wide ? "leaky_relu.backward4" : "leaky_relu.backward", (push.units + 3) / 4,
                          {io.y[0].slice, io.dy[0].slice, io.dx[0].slice}, push);
 }
 

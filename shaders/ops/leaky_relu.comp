@@ -1,30 +1,35 @@
-// variants: forward backward
+// variants: forward forward4 backward backward4
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "flat4.glsl"
+#include "leaky.glsl"
+#if defined(FORWARD4) || defined(BACKWARD4)
+#define WIDE
+#endif
+#include "flat_any.glsl"
 
-// y = max(x, slope x); dx = dy where y > 0, slope dy elsewhere. One invocation takes 4 consecutive words.
+// y = max(x, slope x); dx = dy where y > 0, slope dy elsewhere. One invocation takes 4 consecutive units.
 layout(push_constant) uniform Push {
-  uint words;
+  uint units;
   float slope;
   uint accumulate;
 } p;
 
-#ifdef FORWARD
-READ1(0, x)
-WRITE1(1, y)
+#if defined(FORWARD) || defined(FORWARD4)
+READ(0, x)
+WRITE(1, y)
 #else
-READ1(0, y)
-READ1(1, dy)
-WRITE1(2, dx)
+READ(0, y)
+READ(1, dy)
+WRITE(2, dx)
 #endif
 
 void main() {
   uint first = flat_index() * 4;
-#ifdef FORWARD
-  FOR4(i, first, p.words, { float v = load1(x, i); y[i] = v > 0.0 ? v : p.slope * v; })
+#if defined(FORWARD) || defined(FORWARD4)
+  FOR4(i, first, p.units, { VALUE v = LOAD(x, i); STORE(y, i, v * leaky_slope(v, p.slope)) })
 #else
-  FOR4(i, first, p.words, { add1(dx, i, (load1(y, i) > 0.0 ? 1.0 : p.slope) * load1(dy, i), p.accumulate) })
+  FOR4(i, first, p.units, { VALUE v = LOAD(y, i); ADD(dx, i, leaky_slope(v, p.slope) * LOAD(dy, i), p.accumulate) })
 #endif
 }

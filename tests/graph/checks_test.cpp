@@ -12,13 +12,14 @@ namespace {
 
 class OpCheckTest : public testing::TestWithParam<OpChecks> {};
 
-void run_all(const Device& device, const OpChecks& checks) {
+void run_all(const Device& device, const OpChecks& checks, Storage activations = Storage::kFloat32) {
   for (const CheckCase& check : checks.cases) {
+    if (activations == Storage::kFloat16 && !has_activations(check)) continue;
     if (check.runs_on && !check.runs_on(device.caps())) {
       std::cout << "left out, " << device.caps().name << " has not what it takes: " << check.label << "\n";
       continue;
     }
-    const CheckResult result = run_check(device, check);
+    const CheckResult result = run_check(device, check, activations);
     for (const auto& failure : result.failures)
       ADD_FAILURE() << checks.op << " " << check.label << ": " << failure;
   }
@@ -30,6 +31,16 @@ TEST_P(OpCheckTest, MatchesItsReferenceOnTheOtherAccessPath) {
   if (other_access_device() == nullptr)
     GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
   run_all(*other_access_device(), GetParam());
+}
+
+TEST_P(OpCheckTest, MatchesItsReferenceInMixedPrecision) {
+  run_all(test_device(), GetParam(), Storage::kFloat16);
+}
+
+TEST_P(OpCheckTest, MatchesItsReferenceInMixedPrecisionOnTheOtherAccessPath) {
+  if (other_access_device() == nullptr)
+    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  run_all(*other_access_device(), GetParam(), Storage::kFloat16);
 }
 
 TEST(ExactSumsTest, ConvolutionsMatchTheirReferences) {

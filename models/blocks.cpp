@@ -28,8 +28,8 @@ Value down(LayerFactory& layers, Value x, const std::string& name, int64_t chann
   return norm(layers.conv(add(mid, x), name + ".down.0", channels, 3, 2), name + ".down.2");
 }
 
-Value up(LayerFactory& layers, Value x, const Shape& level, Value skip, const std::string& name,
-         int64_t channels, const Norm& norm, const UpOptions& options) {
+Value up(LayerFactory& layers, Value x, Shape level, Value skip, const std::string& name, int64_t channels,
+         const Norm& norm, const UpOptions& options) {
   const Scope scope(layers.graph(), name);
   const Value u =
       crop_to(norm(layers.conv_transpose(x, name + ".up.0", channels, options.kernel), name + ".up.2"), level);

@@ -25,7 +25,7 @@ struct UpOptions {
 
 /// u = norm(tconv(x)), cropped to the size of `level`, the tensor of the same level on the way down;
 /// norm(conv3([skip, u])). An empty skip leaves it out.
-Value up(LayerFactory& layers, Value x, const Shape& level, Value skip, const std::string& name,
-         int64_t channels, const Norm& norm, const UpOptions& options);
+Value up(LayerFactory& layers, Value x, Shape level, Value skip, const std::string& name, int64_t channels,
+         const Norm& norm, const UpOptions& options);
 
 }  // namespace vkopple

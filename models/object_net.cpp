@@ -87,7 +87,7 @@ Value decode_masks(LayerFactory& layers, const ModelConfig& config, Value codes,
                    const std::vector<Value>& skips) {
   Graph& graph = layers.graph();
   const auto channels = channels_of(config);
-  const Shape& top = skips.back().shape();
+  const Shape top = skips.back().shape();
   const int64_t slots = codes.shape()[0];
   const int64_t batch = codes.shape()[1];
   const int64_t samples = slots * batch;

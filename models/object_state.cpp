@@ -39,7 +39,7 @@ ObjectMotion object_motion(const ModelConfig& config, const ObjectState& o1, con
   const auto aligned = align(matching.log_w, o1.location, o1.log_pose);
   ObjectMotion motion;
   motion.q = matching.q;
-  const Shape& b_k = motion.q.shape();
+  const Shape b_k = motion.q.shape();
   const Value q = graph.reshape(motion.q, row_major({b_k[0], b_k[1], 1}));
   motion.velocity = mul(sub(o2.location, transform_points(camera.m12, aligned[0])), q);
   motion.location3 = transform_points(camera.m23, add(o2.location, motion.velocity));

@@ -244,13 +244,17 @@ class Executor::Layouter {
 };
 
 Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
-    : device_(&device), graph_(&graph), loss_(options.loss), groups_(std::move(options.groups)) {
+    : device_(&device),
+      graph_(&graph),
+      loss_(options.loss),
+      loss_scale_(options.loss_scale),
+      groups_(std::move(options.groups)) {
   if (!groups_) groups_ = std::make_shared<GroupStore>(device);
   kept_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "inputs and outputs", uint64_t{4} << 20);
   if (loss_) backward_plan_ = plan_backward(graph, loss_, options.trained);
   for (const Node& node : graph.nodes()) {
     std::vector<TensorSpec> specs;
-    for (int id : node.inputs) specs.push_back(graph.info(id).spec);
+    for (int id : node.inputs) specs.push_back(stored_as(graph.info(id).spec, Storage::kFloat32));
     needs_.push_back(node.op->needs(specs, device.caps()));
     forward_flop_ += needs_.back().forward_flop;
   }
@@ -315,7 +319,11 @@ void Executor::record_forward(bool profile) {
 void Executor::record_backward(bool profile) {
   Recorder recorder(*device_, profile);
   for (int root : backward_plan_.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
-  recorder.fill(gradient_operand(loss_.id()).slice, std::bit_cast<uint32_t>(1.0F));
+  const Slice seed = gradient_operand(loss_.id()).slice;
+  if (loss_scale_)
+    recorder.copy(slice(loss_scale_).sub(0, seed.bytes), seed);
+  else
+    recorder.fill(seed, std::bit_cast<uint32_t>(1.0F));
   for (size_t s = 0; s < backward_plan_.steps.size(); ++s) {
     const BackwardStep& step = backward_plan_.steps[s];
     for (size_t n : recomputation_.before[s]) record_again(recorder, n);

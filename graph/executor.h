@@ -38,6 +38,7 @@ struct ExecutorOptions {
   std::shared_ptr<GroupStore> groups;           ///< null: groups of its own
   Value loss;                                   ///< none: inference, forward alone
   std::vector<std::string> trained;             ///< parameter groups that receive gradients
+  Value loss_scale;                             ///< row-major; its first element is the loss' gradient. None: 1
   bool profile = false;                         ///< timestamps around every command
   uint64_t recompute_from = uint64_t{1} << 18;  ///< bytes from which backward recomputes what is cheap to
   bool in_place = true;                         ///< outputs take over the bytes of inputs where ops allow it
@@ -108,6 +109,7 @@ class Executor {
   const Device* device_;
   Graph* graph_;
   Value loss_;
+  Value loss_scale_;
   std::shared_ptr<GroupStore> groups_;
   std::unique_ptr<Arena> kept_;
   std::vector<std::unique_ptr<Buffer>> blocks_;

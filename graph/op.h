@@ -103,7 +103,8 @@ class Op {
 };
 
 /// The outputs of an op as they lie in memory. An op's infer() tells shapes, layouts and types; how floats are
-/// stored is nothing that it sees: NC4HW4 outputs are stored as `activations` says, all others as float32.
+/// stored is nothing that it or needs() sees (saved tensors and scratch are float32): NC4HW4 outputs are stored
+/// as `activations` says, all others as float32.
 std::vector<TensorSpec> infer_stored(const Op& op, std::span<const TensorSpec> x, Storage activations);
 
 /// Bytes of a, rounded up so that what follows is aligned for binding.

@@ -39,6 +39,7 @@ float as_float(double value) { return static_cast<float>(value); }
 
 Opple::Opple(Graph& graph, const ModelConfig& config, const OppleOptions& options)
     : graph_(&graph), config_(config), options_(options) {
+  graph.store_activations(activation_storage(options.precision));
   declare_inputs();
   if (options.background_only)
     build_background_only();

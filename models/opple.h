@@ -11,6 +11,7 @@
 #include "models/layers.h"
 #include "models/model_config.h"
 #include "models/object_state.h"
+#include "models/precision.h"
 
 namespace vkopple {
 
@@ -25,7 +26,8 @@ struct OppleOptions {
   int64_t batch = 1;
   bool training = false;         ///< batch statistics, dropout; otherwise running averages
   bool background_only = false;  ///< only the depth network, warping with the background hypothesis alone
-  bool keep_stages = false;      ///< keeps every named stage for the host (parity)
+  Precision precision = Precision::kFloat32;
+  bool keep_stages = false;                  ///< keeps every named stage for the host (parity)
   uint64_t max_tensor_bytes = ~uint64_t{0};  ///< the device's limit (Caps::max_tensor_bytes)
 };
 

@@ -11,6 +11,7 @@ namespace vkopple {
 Perception::Perception(const Device& device, const ModelConfig& config, std::shared_ptr<GroupStore> groups,
                        const PerceptionOptions& options)
     : config_(config), options_(options) {
+  graph_.store_activations(activation_storage(options.precision));
   const uint64_t largest = device.caps().max_tensor_bytes();
   const auto use = [&](LayerFactory& layers) {
     tensors_.insert(tensors_.end(), layers.tensors().begin(), layers.tensors().end());

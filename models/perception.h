@@ -7,6 +7,7 @@
 #include "models/layers.h"
 #include "models/model_config.h"
 #include "models/object_state.h"
+#include "models/precision.h"
 
 namespace vkopple {
 
@@ -24,6 +25,7 @@ struct PerceptionOptions {
   int64_t batch = 1;
   bool objects = true;   ///< false: depth alone
   bool profile = false;  ///< timestamps around every command
+  Precision precision = Precision::kFloat32;
 };
 
 /// The trained networks on single images. Weights and averages are those of `groups`, as training or a

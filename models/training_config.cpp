@@ -84,6 +84,7 @@ TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms)
   clip.number("object", c.clip.object, 1e-9, 1e9);
   clip.number("imagination", c.clip.imagination, 1e-9, 1e9);
   clip.finish();
+  object.choice("precision", c.precision, kPrecisionNames);
   object.number("reverse_probability", c.reverse_probability, 0, 1);
   read_stages(object, c, rooms);
   object.finish();
@@ -93,13 +94,18 @@ TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms)
 nlohmann::ordered_json write_training_config(const TrainingConfig& c, const RoomsConfig& rooms) {
   auto stages = nlohmann::ordered_json::array();
   for (const TrainingStage& stage : c.stages) stages.push_back(write_stage(stage, rooms));
-  return {{"batch", c.batch},
-          {"learning_rate", c.learning_rate},
-          {"betas", c.betas},
-          {"epsilon", c.epsilon},
-          {"clip", {{"depth", c.clip.depth}, {"object", c.clip.object}, {"imagination", c.clip.imagination}}},
-          {"reverse_probability", c.reverse_probability},
-          {"stages", stages}};
+  nlohmann::ordered_json result{
+      {"batch", c.batch},
+      {"learning_rate", c.learning_rate},
+      {"betas", c.betas},
+      {"epsilon", c.epsilon},
+      {"clip", {{"depth", c.clip.depth}, {"object", c.clip.object}, {"imagination", c.clip.imagination}}}};
+  // Left out where it is the default: checkpoints of float32 stay as they were before there was a choice.
+  if (c.precision != Precision::kFloat32)
+    result["precision"] = kPrecisionNames[static_cast<std::size_t>(c.precision)];
+  result["reverse_probability"] = c.reverse_probability;
+  result["stages"] = stages;
+  return result;
 }
 
 }  // namespace vkopple

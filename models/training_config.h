@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/precision.h"
 #include "models/rooms_config.h"
 #include "models/strict_json.h"
 
@@ -49,6 +50,7 @@ struct TrainingConfig {
   std::array<double, 2> betas{0.9, 0.999};
   double epsilon = 1e-6;
   Clip clip;
+  Precision precision = Precision::kFloat32;
   double reverse_probability = 0.5;   ///< of showing a triplet backwards in time
   std::vector<TrainingStage> stages;  ///< as the file lists them; see Config::stages()
 

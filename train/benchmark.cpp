@@ -149,8 +149,9 @@ BenchmarkResult benchmark_inference(const Device& device, const Config& config,
   std::unique_ptr<Perception> perception;
   const auto run = [&] { perception->see(images); };
   const auto build = [&](bool profile) {
-    perception = std::make_unique<Perception>(device, config.model, std::make_shared<GroupStore>(device),
-                                              PerceptionOptions{.batch = options.batch, .profile = profile});
+    perception = std::make_unique<Perception>(
+        device, config.model, std::make_shared<GroupStore>(device),
+        PerceptionOptions{.batch = options.batch, .profile = profile, .precision = config.training.precision});
     initialise(perception->executor(), perception->tensors());
   };
   result.first_step_seconds = seconds_of([&] {

@@ -50,7 +50,7 @@ struct StepMemory {
 StepMemory measure_memory(const Device& device, const Config& config, const BenchmarkOptions& options);
 /// A training step on made-up images: forward, backward and update.
 BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options);
-/// Depth, masks and locations of single images.
+/// Depth, masks and locations of single images. Both run in the precision of config.training.
 BenchmarkResult benchmark_inference(const Device& device, const Config& config,
                                     const BenchmarkOptions& options);
 

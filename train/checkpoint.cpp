@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "graph/ops/loss_scale.h"
 #include "runtime/error.h"
 #include "train/config_difference.h"
 #include "train/quote.h"
@@ -78,15 +79,16 @@ void add_shapes(std::map<std::string, StoredShape>& shapes, const std::vector<La
   for (const LayoutEntry& entry : entries) shapes[entry.name] = entry.stored_shape();
 }
 
-/// Variances and means of squares: the square root of a negative one would not be finite.
-bool is_mean_square(const std::string& name) {
-  return name.ends_with(".running_var") || (name.starts_with("adam/") && name.find("/v/") != std::string::npos);
+/// Variances and means of squares: the square root of a negative one would not be finite. A scale and counts.
+bool is_never_negative(const std::string& name) {
+  return name == kLossScaleState || name.ends_with(".running_var") ||
+         (name.starts_with("adam/") && name.find("/v/") != std::string::npos);
 }
 
 void read_entries(const SafetensorsFile& file, ModelStore& store, const std::vector<LayoutEntry>& entries) {
   for (const LayoutEntry& entry : entries) {
     const std::vector<float> values = file.read_floats(entry.name, entry.stored_shape());
-    if (is_mean_square(entry.name) && *std::min_element(values.begin(), values.end()) < 0)
+    if (is_never_negative(entry.name) && *std::min_element(values.begin(), values.end()) < 0)
       throw Error(fmt::format("{}: {} holds a negative number", shown(file.path()), entry.name));
     store.write(entry, values);
   }
@@ -156,7 +158,7 @@ RoomsConfig LoadedModel::rooms() const { return config.stages().at(position.stag
 LoadedModel load_model(const Device& device, const std::filesystem::path& path) {
   const SafetensorsFile file(path);
   const CheckpointHeader header = header_of(file);
-  ModelLayout layout(header.config.model);
+  ModelLayout layout(header.config.model, header.config.training.precision);
   std::set<std::string> allowed;
   for (const LayoutEntry& entry : layout.optimiser()) allowed.insert(entry.name);
   check_tensors(file, weight_shapes(layout), allowed);

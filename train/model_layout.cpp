@@ -4,6 +4,7 @@
 
 #include "graph/graph.h"
 #include "graph/ops/adam.h"
+#include "graph/ops/loss_scale.h"
 #include "models/opple.h"
 
 namespace vkopple {
@@ -14,12 +15,13 @@ constexpr int64_t kFrames = 3;
 
 }  // namespace
 
-ModelLayout::ModelLayout(const ModelConfig& config)
+ModelLayout::ModelLayout(const ModelConfig& config, Precision precision)
     : slots_(config.slots), frames_seen_(config.statistics_frames == StatisticsFrames::kAll ? kFrames : 1) {
   Graph graph;
   const Opple model(graph, config, {.batch = 1, .training = true});
   add_weights(graph, model);
   for (const std::string& network : model.groups()) add_optimiser(graph, network);
+  if (precision == Precision::kMixed) add_loss_scale(graph, model.groups());
 }
 
 void ModelLayout::add_weights(Graph& graph, const Opple& model) {
@@ -51,6 +53,13 @@ void ModelLayout::add_optimiser(Graph& graph, const std::string& network) {
   const std::string correction = state + "/correction";
   optimiser_.push_back(
       {correction, state, offset(correction), graph.find(correction).shape(), Initial::constant(0)});
+}
+
+void ModelLayout::add_loss_scale(Graph& graph, const std::vector<std::string>& networks) {
+  const Value state = loss_scale(graph, networks);
+  groups_[kLossScaleGroup] = graph.group(kLossScaleGroup).spec().bytes();
+  optimiser_.push_back(
+      {kLossScaleState, kLossScaleGroup, graph.info(state.id()).offset, state.shape(), Initial::constant(0)});
 }
 
 int64_t ModelLayout::calls_in_a_step(const std::string& counter, bool background_only) const {

@@ -8,6 +8,7 @@
 #include "graph/shape.h"
 #include "models/initialise.h"
 #include "models/model_config.h"
+#include "models/precision.h"
 #include "train/stored_tensor.h"
 
 namespace vkopple {
@@ -30,12 +31,12 @@ struct LayoutEntry {
 /// Names, shapes and places of everything that training a model changes. Needs no device.
 class ModelLayout {
  public:
-  explicit ModelLayout(const ModelConfig& config);
+  explicit ModelLayout(const ModelConfig& config, Precision precision = Precision::kFloat32);
 
   /// Parameters and running averages, by the names of docs/model.md §11.
   const std::vector<LayoutEntry>& weights() const { return weights_; }
   /// State of Adam: "adam/NETWORK/m/NAME", "adam/NETWORK/v/NAME" (its running means of gradient and squared
-  /// gradient) and "adam/NETWORK/correction".
+  /// gradient) and "adam/NETWORK/correction"; in mixed precision "loss_scale/state" too.
   const std::vector<LayoutEntry>& optimiser() const { return optimiser_; }
   /// Names of the "num_batches_tracked" of every batch norm.
   const std::vector<std::string>& batch_counters() const { return batch_counters_; }
@@ -46,6 +47,7 @@ class ModelLayout {
 
  private:
   void add_weights(Graph& graph, const Opple& model);
+  void add_loss_scale(Graph& graph, const std::vector<std::string>& networks);
   void add_optimiser(Graph& graph, const std::string& network);
 
   int64_t slots_;

@@ -8,8 +8,8 @@
 
 namespace vkopple {
 
-ModelStore::ModelStore(const Device& device, const ModelConfig& config)
-    : ModelStore(device, ModelLayout(config)) {}
+ModelStore::ModelStore(const Device& device, const ModelConfig& config, Precision precision)
+    : ModelStore(device, ModelLayout(config, precision)) {}
 
 ModelStore::ModelStore(const Device& device, ModelLayout layout)
     : device_(&device), layout_(std::move(layout)), groups_(std::make_shared<GroupStore>(device)) {

@@ -21,7 +21,7 @@ class ModelStore {
  public:
   /// Zeros, which is where Adam starts; the weights wait for initialise() or a checkpoint. Takes device memory
   /// for what is used, when it is first used.
-  ModelStore(const Device& device, const ModelConfig& config);
+  ModelStore(const Device& device, const ModelConfig& config, Precision precision = Precision::kFloat32);
   ModelStore(const Device& device, ModelLayout layout);
 
   /// Weights as docs/model.md §2 has them drawn.

@@ -70,7 +70,7 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
       config_(std::move(config)),
       options_(std::move(options)),
       plan_(config_, options_.steps),
-      store_(device, config_.model),
+      store_(device, config_.model, config_.training.precision),
       saved_at_(Clock::now()) {
   if (resume) {
     position_ = load_checkpoint(options_.folder.latest(), store_, config_);

@@ -1,13 +1,19 @@
 #include "train/training_step.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "graph/ops/adam.h"
+#include "graph/ops/loss_scale.h"
 #include "runtime/device.h"
+#include "runtime/error.h"
 #include "train/trace.h"
 
 namespace vkopple {
 namespace {
+
+constexpr LossScaleOptions kLossScale{};
 
 double clip_of(const TrainingConfig& training, Network network) {
   switch (network) {
@@ -29,25 +35,36 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
                                    OppleOptions{.batch = stage.batch,
                                                 .training = true,
                                                 .background_only = stage.hypotheses == Hypotheses::kBackground,
+                                                .precision = config.training.precision,
                                                 .max_tensor_bytes = device.caps().max_tensor_bytes()});
   const auto present = model_->groups();
+  std::vector<Network> networks;
   std::vector<std::string> trained;
   for (const Network network : stage.networks) {
     const std::string group(kNetworkNames[static_cast<size_t>(network)]);
     if (std::find(present.begin(), present.end(), group) == present.end()) continue;
+    networks.push_back(network);
+    trained.push_back(group);
+  }
+  if (config.training.precision == Precision::kMixed) loss_scale_ = loss_scale(graph_, trained, kLossScale);
+  for (size_t i = 0; i < networks.size(); ++i) {
     AdamOptions options{};
     options.learning_rate = stage.learning_rate;
     options.beta1 = config.training.betas[0];
     options.beta2 = config.training.betas[1];
     options.epsilon = config.training.epsilon;
-    options.clip = clip_of(config.training, network);
-    adam(graph_, group, options);
-    trained.push_back(group);
+    options.clip = clip_of(config.training, networks[i]);
+    adam(graph_, trained[i], options, loss_scale_);
   }
-  executor_ = std::make_unique<Executor>(
-      device, graph_,
-      ExecutorOptions{
-          .groups = std::move(groups), .loss = model_->loss(), .trained = trained, .profile = profile});
+  executor_ = std::make_unique<Executor>(device, graph_,
+                                         ExecutorOptions{.groups = std::move(groups),
+                                                         .loss = model_->loss(),
+                                                         .trained = trained,
+                                                         .loss_scale = loss_scale_,
+                                                         .profile = profile});
+  // A store that has not been trained in mixed precision yet holds zeros.
+  if (loss_scale_ && executor_->read(loss_scale_)[LossScale::kScale] == 0)
+    executor_->write(loss_scale_, std::vector<float>{kLossScale.initial, 0, 0, 0});
   model_->feed_constants(*executor_);
 }
 
@@ -61,6 +78,7 @@ std::map<std::string, double> TrainingStep::run(const Triplets& triplets, uint32
   executor_->forward();
   executor_->backward();
   executor_->update();
+  if (loss_scale_) require_finite_gradients();
   std::map<std::string, double> losses;
   {
     const Trace::Span span(trace, "read losses");
@@ -70,6 +88,16 @@ std::map<std::string, double> TrainingStep::run(const Triplets& triplets, uint32
   if (trace != nullptr)
     for (const PassProfile& pass : executor_->passes()) trace->add_pass(pass);
   return losses;
+}
+
+/// Halving the scale has an end: gradients that are not finite even so are no matter of float16.
+void TrainingStep::require_finite_gradients() const {
+  const auto state = executor_->read(loss_scale_);
+  if (state[LossScale::kFactor] == 0 && state[LossScale::kScale] == kLossScale.smallest)
+    throw Error(
+        fmt::format("gradients are not finite however little the loss is scaled, {} steps were skipped; try a "
+                    "smaller learning rate, or --precision float32",
+                    state[LossScale::kSkipped]));
 }
 
 }  // namespace vkopple

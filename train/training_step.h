@@ -13,8 +13,9 @@ class Device;
 class Trace;
 
 /// The training step of one stage on a device: the model's graph for the stage's networks and hypotheses, with
-/// Adam for the networks that learn. Weights, averages and optimiser state live in `groups`, which stages
-/// share.
+/// Adam for the networks that learn. In mixed precision the loss is scaled, and a step whose gradients overflow
+/// changes nothing but the scale (graph/ops/loss_scale.h). Weights, averages and optimiser state live in
+/// `groups`, which stages share.
 class TrainingStep {
  public:
   TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
@@ -31,8 +32,11 @@ class TrainingStep {
                                     Trace* trace = nullptr);
 
  private:
+  void require_finite_gradients() const;
+
   Graph graph_;
   std::unique_ptr<Opple> model_;
+  Value loss_scale_;  ///< the state of LossScale, in mixed precision
   std::unique_ptr<Executor> executor_;
 };
 

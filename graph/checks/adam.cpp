@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "graph/checks/check.h"
+#include "graph/ops/loss_scale.h"
 
 namespace vkopple {
 namespace {
@@ -16,10 +18,12 @@ HostTensors adam_reference(const HostTensors& x, const AdamOptions& o) {
   HostTensor m = x[2];
   HostTensor v = x[3];
   HostTensor c = x[4];
+  const double factor = x.size() > 5 ? x[5].at(LossScale::kFactor) : 1;
+  if (factor == 0) return {p, m, v, c};
   c.at(0) = c.at(0) * o.beta1 + 1 - o.beta1;
   c.at(1) = c.at(1) * o.beta2 + 1 - o.beta2;
   for (size_t i = 0; i < p.values.size(); ++i) {
-    const double g = std::clamp(x[1].values[i], -o.clip, o.clip);
+    const double g = std::clamp(x[1].values[i] * factor, -o.clip, o.clip);
     m.values[i] = o.beta1 * m.values[i] + (1 - o.beta1) * g;
     v.values[i] = o.beta2 * v.values[i] + (1 - o.beta2) * g * g;
     p.values[i] -=
@@ -44,6 +48,20 @@ CheckCase adam_case(int64_t size, int steps, const AdamOptions& o) {
               }};
 }
 
+/// With a loss scale whose factor is this. A skipped step's gradient is not finite.
+CheckCase scaled_adam_case(int64_t size, const AdamOptions& o, double factor) {
+  CheckCase check = adam_case(size, 3, o);
+  check.label += fmt::format(", factor {}", factor);
+  check.inputs.push_back(row_major({LossScale::kElements}));
+  check.prepare = [factor, plain = check.prepare](HostTensors& x) {
+    plain(x);
+    x[5].at(LossScale::kFactor) = factor;
+    if (factor == 0) x[1].values[0] = std::numeric_limits<double>::infinity();
+    if (factor == 0) x[1].values[1] = std::numeric_limits<double>::quiet_NaN();
+  };
+  return check;
+}
+
 }  // namespace
 
 void check_adam(CheckList& list) {
@@ -51,6 +69,8 @@ void check_adam(CheckList& list) {
   list.push_back(adam_case(64, 0, {.learning_rate = 0.1, .clip = 1}));
   list.push_back(adam_case(1036, 3, {.learning_rate = 0.1, .clip = 2.5}));
   list.push_back(adam_case(260, 1000, {.learning_rate = 0.1, .beta1 = 0.5, .beta2 = 0.9, .epsilon = 0.1}));
+  list.push_back(scaled_adam_case(1036, {.learning_rate = 0.1, .clip = 0.5}, 0.25));
+  list.push_back(scaled_adam_case(1036, {.learning_rate = 0.1}, 0));
 }
 
 }  // namespace vkopple

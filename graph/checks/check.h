@@ -79,11 +79,6 @@ struct CheckResult {
 constexpr double kWorstLimit = 1e-3;
 constexpr double kL2Limit = 1e-4;
 
-/// In float16 storage a normal number is off by up to the unit round-off, 2^-11 of it, so that a tensor's error
-/// grows by no more in either measure. Gradients read the outputs that forward rounded, and an accumulated one
-/// is rounded twice: as what is compared with, and as the sum.
-constexpr double kFloat16Limit = 1.0 / 2048;
-
 /// Whether an op has NC4HW4 operands, which mixed precision stores as float16.
 bool has_activations(const CheckCase& check);
 

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include "graph/kernels/words.h"
+#include "graph/ops/loss_scale.h"
 
 namespace vkopple {
 namespace {
 
-enum Input : size_t { kParameters, kGradient, kM, kV, kCorrection };
+enum Input : size_t { kParameters, kGradient, kM, kV, kCorrection, kScale };
 
 struct CorrectionPush {
   float beta1;
@@ -41,7 +42,10 @@ Adam::Adam(const AdamOptions& options) : options_(options) {
 }
 
 std::vector<TensorSpec> Adam::infer(std::span<const TensorSpec> x) const {
-  require(x.size() == 5, "takes parameters, gradient, m, v and the corrections");
+  require(x.size() == 5 || x.size() == 6,
+          "takes parameters, gradient, m, v, the corrections, and perhaps the state of a loss scale");
+  require(x.size() == 5 || x[kScale] == row_major({LossScale::kElements}),
+          "the state of the loss scale must be four numbers");
   const TensorSpec& flat = x[kParameters];
   require(flat == row_major({flat.shape.elements()}) && flat.shape.elements() % 4 == 0,
           fmt::format("takes a group's flat tensor, not {}", flat.shape.text()));
@@ -58,7 +62,9 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
   const auto f32 = [](double v) { return static_cast<float>(v); };
   const CorrectionPush correction{f32(options_.beta1), f32(options_.beta2), f32(1 - options_.beta1),
                                   f32(1 - options_.beta2)};
-  recorder.dispatch_flat("adam.correction", 1, {io.x[kCorrection].slice}, correction);
+  const Slice scale = io.x.size() > kScale ? io.x[kScale].slice : Slice{};
+  const uint32_t scaled = scale ? 1 : 0;
+  recorder.dispatch_flat("adam.correction", 1, {io.x[kCorrection].slice, scale}, correction, {scaled});
   const AdamPush push{.vectors = words(io.x[kParameters]) / 4,
                       .learning_rate = f32(options_.learning_rate),
                       .beta1 = correction.beta1,
@@ -67,22 +73,24 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
                       .rest2 = correction.rest2,
                       .epsilon = f32(options_.epsilon),
                       .clip = f32(options_.clip)};
-  recorder.dispatch_flat(
-      "adam.apply", (push.vectors + 3) / 4,
-      {io.x[kGradient].slice, io.x[kCorrection].slice, io.x[kParameters].slice, io.x[kM].slice, io.x[kV].slice},
-      push);
+  recorder.dispatch_flat("adam.apply", (push.vectors + 3) / 4,
+                         {io.x[kGradient].slice, io.x[kCorrection].slice, io.x[kParameters].slice,
+                          io.x[kM].slice, io.x[kV].slice, scale},
+                         push, {scaled});
 }
 
 void Adam::record_backward(Recorder&, const Backward&) const {}
 
-void adam(Graph& graph, const std::string& group, const AdamOptions& options) {
+void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value scale) {
   const Value parameters = graph.group(group);
   const Value gradient = graph.gradient(group);
   const std::string state = "adam/" + group;
   const Value m = graph.state(state, state + "/m", parameters.spec());
   const Value v = graph.state(state, state + "/v", parameters.spec());
   const Value correction = graph.state(state, state + "/correction", row_major({2}));
-  graph.update(std::make_shared<Adam>(options), {parameters, gradient, m, v, correction});
+  std::vector<Value> inputs{parameters, gradient, m, v, correction};
+  if (scale) inputs.push_back(scale);
+  graph.update(std::make_shared<Adam>(options), inputs);
 }
 
 }  // namespace vkopple

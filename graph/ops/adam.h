@@ -21,6 +21,8 @@ struct AdamOptions {
 /// c₁ = 1 − β₁ᵗ and c₂ = 1 − β₂ᵗ grow by c ← c β + (1 − β), which keeps digits that a power in float32 would
 /// lose. A NaN in the gradient is not clipped: it shows in the parameters.
 /// Inputs: p, gradient, m, v (N, a multiple of 4), c (2); all but the gradient are updated. No outputs.
+/// With a sixth input, the state of LossScale, the gradient is multiplied by its factor first, and where that
+/// is 0 nothing changes.
 class Adam : public Op {
  public:
   explicit Adam(const AdamOptions& options);
@@ -28,7 +30,7 @@ class Adam : public Op {
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool differentiable(size_t) const override { return false; }
-  bool mutates(size_t input) const override { return input != 1; }
+  bool mutates(size_t input) const override { return input != 1 && input != 5; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 
@@ -38,6 +40,7 @@ class Adam : public Op {
 
 /// Adds the update of a parameter group by its gradient, after all of the group's parameters are declared. Its
 /// state is the group "adam/<group>": adam/<group>/m, …/v, and …/correction, which holds c₁ and c₂.
-void adam(Graph& graph, const std::string& group, const AdamOptions& options);
+/// scale: what loss_scale() returned, or none.
+void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value scale = {});
 
 }  // namespace vkopple

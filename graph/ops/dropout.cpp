@@ -39,13 +39,13 @@ void Dropout::record(Recorder& recorder, const Operand& from, const Operand& ran
                      uint32_t accumulate) const {
   const DropoutRate rate(rate_);
   const DropoutPush push{words(from), stream_, rate.threshold, rate.scale, accumulate};
-  // Whole vectors where the size allows; the unused binding of x stays empty.
+  // Whole vectors where the size allows; the unused bindings stay empty.
   const bool vectors = push.words % 4 == 0;
   const Slice none;
-  recorder.dispatch_flat(
-      "dropout", (push.words + kWordsEach - 1) / kWordsEach,
-      {random.slice, vectors ? from.slice : none, to.slice, vectors ? none : from.slice, to.slice}, push,
-      {vectors ? 1U : 0U});
+  recorder.dispatch_flat("dropout", (push.words + kWordsEach - 1) / kWordsEach,
+                         {random.slice, vectors ? from.slice : none, vectors ? to.slice : none,
+                          vectors ? none : from.slice, vectors ? none : to.slice},
+                         push, {vectors ? 1U : 0U});
 }
 
 void Dropout::record_forward(Recorder& recorder, const Forward& io) const {

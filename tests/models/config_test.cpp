@@ -60,6 +60,15 @@ TEST(Config, UnroundNumbersRoundTrip) {
   EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
 }
 
+TEST(Config, PrecisionIsWrittenWhereItIsNotTheDefault) {
+  Config c;
+  EXPECT_EQ(c.to_json().find("precision"), std::string::npos);
+  c.training.precision = Precision::kMixed;
+  EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
+  EXPECT_EQ(Config::parse(R"({"training": {"precision": "float32"}})", "run.json"), Config{});
+  EXPECT_NE(refusal(R"({"training": {"precision": "half"}})").find("training.precision"), std::string::npos);
+}
+
 TEST(Config, SmallLearnsDepthFirst) {
   const Config c = Config::load("small");
   ASSERT_EQ(c.stages().size(), 2U);

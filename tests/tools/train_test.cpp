@@ -34,6 +34,24 @@ class TrainCommand : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(TrainCommand, TrainsInMixedPrecision) {
+  expect_success(train({config(), "--data", "rooms:1", "--out", out(), "--steps", "1", "--batch", "2",
+                        "--precision", "mixed", "--eval-every", "0"}));
+  const std::string model = out() + "/latest.safetensors";
+  expect_success(train({"--out", out(), "--resume", "--steps", "2", "--eval-every", "0"}));
+  expect_failure(train({"--out", out(), "--resume", "--steps", "3", "--precision", "float32"}), 1,
+                 {"training.precision", "mixed"});
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out() + "2", "--precision", "half"}), 2,
+                 {"--precision", "half"});
+  const auto scores = [&](const std::string& precision) {
+    const auto outcome =
+        run_vkopple({"eval", model, "--data", "rooms:2", "--images", "2", "--json", "--precision", precision});
+    expect_success(outcome);
+    return outcome.output;
+  };
+  EXPECT_NE(scores("mixed"), scores("float32"));
+}
+
 TEST_F(TrainCommand, TrainsAndGoesOn) {
   const auto first = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "1", "--batch", "2"});
   expect_success(first);

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "tools/set_option.h"
 #include "train/benchmark.h"
 #include "train/conv_benchmark.h"
@@ -22,6 +24,7 @@ struct Options {
   std::string preset = "full";
   std::vector<std::string> set;
   BenchmarkOptions benchmark;
+  std::optional<Precision> precision;
   std::string by_op;  ///< "shape" or "op"; empty: the short table
   std::string algorithm;
   bool winograd = true;
@@ -149,6 +152,8 @@ void run(const Options& options) {
   if (options.what == "conv" && (!options.by_op.empty() || !options.benchmark.trace.empty()))
     throw UsageError("--by-op and --profile go with step and infer");
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
+  Config config = Config::load(options.preset, options.set);
+  if (options.precision) config.training.precision = *options.precision;
   const Device device({.selector = options.device, .winograd = options.winograd, .kernels = options.kernels});
   nlohmann::ordered_json out = header(device, options);
   if (options.what == "conv") {
@@ -176,7 +181,7 @@ void run(const Options& options) {
     out.update(to_json(memory));
     if (!options.json) print(memory);
   } else {
-    const Config config = Config::load(options.preset, options.set);
+    out["precision"] = kPrecisionNames[static_cast<size_t>(config.training.precision)];
     const BenchmarkResult result = options.what == "step"
                                        ? benchmark_step(device, config, options.benchmark)
                                        : benchmark_inference(device, config, options.benchmark);
@@ -225,6 +230,8 @@ void add_bench(CLI::App& app) {
       ->check(CLI::IsMember({"winograd2", "winograd4"}));
   add_winograd_option(*command, options->winograd);
   command->add_flag("--json", options->json, "Print JSON");
+  add_precision_option(*command, options->precision,
+                       "what the configuration says, float32 where it says nothing; conv: always float32");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);
   command->footer("Example: vkopple bench step --preset small --batch 4 --json");

@@ -9,6 +9,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "tools/stage_rooms.h"
 #include "tools/trained_networks.h"
 #include "train/checkpoint.h"
@@ -30,6 +31,7 @@ struct Options {
   size_t rows = 6;
   std::string stage;
   bool json = false;
+  Precision precision = Precision::kFloat32;
   std::string device;
 };
 
@@ -58,7 +60,8 @@ void run(const Options& o) {
   const int64_t images = std::min(o.images, static_cast<int64_t>(source->size().value_or(INT64_MAX)));
   warn_if_untrained(model, {Network::kDepth, Network::kObject});
 
-  Perception perception(device, model.config.model, model.store->groups(), {.batch = batch});
+  Perception perception(device, model.config.model, model.store->groups(),
+                        {.batch = batch, .precision = o.precision});
   std::vector<std::vector<RgbImage>> grid;
   CountProgress progress("images", static_cast<uint64_t>(images));
   const EvaluationScores scores =
@@ -98,6 +101,7 @@ void add_eval(CLI::App& app) {
       "--stage", o->stage,
       "With rooms:SEED: the rooms of that stage of training (default: of the last one trained)");
   command->add_flag("--json", o->json, "Print JSON");
+  add_precision_option(*command, o->precision, "float32");
   add_device_option(*command, o->device);
   command->footer(
       "Examples: vkopple eval run/latest.safetensors --data rooms:2\n"

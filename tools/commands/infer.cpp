@@ -12,6 +12,7 @@
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/output_folder.h"
+#include "tools/precision_option.h"
 #include "tools/trained_networks.h"
 #include "train/atomic_file.h"
 #include "train/checkpoint.h"
@@ -32,6 +33,7 @@ struct Options {
   std::string out;
   std::string grid;
   bool json = false;
+  Precision precision = Precision::kFloat32;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
 };
@@ -55,7 +57,8 @@ class Inference {
         config_(model.config.model),
         folder_(o.out),
         objects_(has_learned(model, Network::kObject)),
-        perception_(device, config_, model.store->groups(), {.batch = 1, .objects = objects_}) {
+        perception_(device, config_, model.store->groups(),
+                    {.batch = 1, .objects = objects_, .precision = o.precision}) {
     if (objects_) return;
     spdlog::warn("the object network has not learned yet at step {}: everything is taken for background",
                  model.position.step);
@@ -164,6 +167,7 @@ void add_infer(CLI::App& app) {
   command->add_option("--grid", o->grid,
                       fmt::format("Write the first {} images with overlay and depth as a PNG", kGridRows));
   command->add_flag("--json", o->json, "Print JSON");
+  add_precision_option(*command, o->precision, "float32");
   add_device_option(*command, o->device);
   add_kernels_option(*command, o->kernels);
   command->footer("Example: vkopple infer run/latest.safetensors photo.jpg room.png --out seen");

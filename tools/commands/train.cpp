@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "tools/set_option.h"
 #include "train/checkpoint.h"
 #include "train/interrupt.h"
@@ -30,6 +31,7 @@ struct Options {
   std::optional<uint64_t> steps;
   std::optional<uint64_t> seed;
   std::optional<int> batch;
+  std::optional<Precision> precision;
   uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
   uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
   std::string profile;
@@ -38,9 +40,12 @@ struct Options {
   bool winograd = true;
 };
 
-void set_batch(Config& config, int batch) {
-  config.training.batch = batch;
-  for (TrainingStage& stage : config.training.stages) stage.batch = batch;
+/// The command line goes before the configuration.
+void set_choices(Config& config, const Options& o) {
+  if (o.precision) config.training.precision = *o.precision;
+  if (!o.batch) return;
+  config.training.batch = *o.batch;
+  for (TrainingStage& stage : config.training.stages) stage.batch = *o.batch;
 }
 
 /// What the command line and, where a run is resumed, its checkpoint ask for.
@@ -58,7 +63,7 @@ Request new_run(const Options& o, TrainerOptions trainer) {
   trainer.data = o.data;
   trainer.seed = o.seed.value_or(0);
   Request request{Config::load(o.config, o.set), std::move(trainer)};
-  if (o.batch) set_batch(request.config, *o.batch);
+  set_choices(request.config, o);
   return request;
 }
 
@@ -77,7 +82,7 @@ Request resumed_run(const Options& o, TrainerOptions trainer) {
   Request request{
       o.config.empty() ? Config::parse(header.config.to_json(), o.out, o.set) : Config::load(o.config, o.set),
       std::move(trainer)};
-  if (o.batch) set_batch(request.config, *o.batch);
+  set_choices(request.config, o);
   return request;
 }
 
@@ -151,6 +156,7 @@ void add_train(CLI::App& app) {
       "Take every sum in a fixed order, so that two runs on a device give the same bytes; the default, "
       "and so far the only way there is");
   add_winograd_option(*command, o->winograd);
+  add_precision_option(*command, o->precision, "what the configuration says, float32 where it says nothing");
   add_device_option(*command, o->device);
   add_kernels_option(*command, o->kernels);
   command->footer(

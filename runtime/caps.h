@@ -2,7 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace vkopple {
 
@@ -22,6 +25,10 @@ enum class KernelFamily {
   kShared,     ///< tiles in shared memory
   kPlain,      ///< what runs anywhere
 };
+
+/// Choices that were measured on a device, by what they are for; what the numbers mean, and whether the device
+/// can do that, the kernels' host side knows (graph/conv/conv_tuning.h).
+using TunedChoices = std::map<std::string, std::vector<uint32_t>>;
 
 /// What a device can do, as plain data: kernels are chosen from this, and tests make it up.
 struct Caps {
@@ -55,6 +62,7 @@ struct Caps {
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
   KernelFamily kernels = KernelFamily::kAuto;  ///< a choice, for convolutions
   bool winograd = true;  ///< a choice: convolutions may use Winograd's algorithm where it is faster
+  std::shared_ptr<const TunedChoices> tuned;  ///< null: none
 
   bool cpu() const { return type == DeviceType::kCpu; }
   /// Invocations of a workgroup for kernels that treat every element alike.

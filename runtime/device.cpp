@@ -52,6 +52,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
   caps_.kernels = options.kernels;
   if (const std::string why = missing_for(caps_.kernels, caps_); !why.empty()) throw Error(why);
   caps_.winograd = options.winograd;
+  if (options.tuned) caps_.tuned = options.tuned(caps_);
   create_logical_device();
   const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;
   pipelines_ = std::make_unique<PipelineSet>(*this, options.use_cache ? folder : std::filesystem::path());

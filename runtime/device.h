@@ -3,6 +3,7 @@
 #include <vulkan/vulkan.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,8 +22,10 @@ struct DeviceOptions {
   bool exact_sums = false;                     ///< Caps::exact_sums
   bool winograd = true;                        ///< Caps::winograd
   KernelFamily kernels = KernelFamily::kAuto;  ///< Caps::kernels; Error where the device can't run the family
-  std::filesystem::path cache_folder;          ///< of the pipeline cache; empty: default_cache_folder()
-  bool use_cache = true;                       ///< false: neither reads nor writes the pipeline cache
+  /// Choices measured on the device that was found, for Caps::tuned; empty: none.
+  std::function<std::shared_ptr<const TunedChoices>(const Caps&)> tuned;
+  std::filesystem::path cache_folder;  ///< of the pipeline cache; empty: default_cache_folder()
+  bool use_cache = true;               ///< false: neither reads nor writes the pipeline cache
 };
 
 /// $XDG_CACHE_HOME/vkopple or ~/.cache/vkopple; empty when neither is known.

@@ -178,6 +178,15 @@ ConvWork work_of(const ProductPush& push, int64_t out_channels, int64_t lanes) {
           .lanes = lanes};
 }
 
+ConvTile standard_shuffle_tile(const ProductPush& push, int64_t out_channels, const Caps& caps) {
+  return choose_shuffle_tile(work_of(push, out_channels, caps.subgroup_size),
+                             std::max(1U, std::thread::hardware_concurrency()));
+}
+
+std::string shuffle_key(const ConvShape& shape, ConvDirection direction) {
+  return tuning_key(direction == ConvDirection::kForward ? kShuffleForward : kShuffleTransposed, shape);
+}
+
 /// Vectors of input channels that a kernel takes in straight code instead of a loop: all or (0) none. Loops
 /// copy every sum, and long code is slow (limit measured on lavapipe).
 uint32_t straight_vectors(const ProductPush& push, const ConvTile& tile) {
@@ -215,6 +224,16 @@ uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
   return std::max(Packing(shape, direction).bytes(), conv_shared_scratch(shape, direction));
 }
 
+std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
+                                              const Caps& caps) {
+  const std::string_view family = chosen_kernel({}, caps);
+  const ProductPush push = product_push(shape, direction);
+  if (family == kShared) return conv_shared_tuning(shape, direction, push, caps);
+  if (family != kShuffle) return std::nullopt;
+  const int64_t out = channels_of(shape, direction).out;
+  return register_tuning(shuffle_key(shape, direction), standard_shuffle_tile(push, out, caps), out);
+}
+
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
   const Caps& caps = recorder.caps();
@@ -227,11 +246,13 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
   if (family == kWindow)
     return record_conv_window(recorder, shape, direction, operands, packed, packing.weight_vectors(),
                               choose_window_tile(shape, direction, caps));
-  const ConvWork work = work_of(push, channels_of(shape, direction).out,
-                                family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
-  const ConvTile tile = family == kShuffle
-                            ? choose_shuffle_tile(work, std::max(1U, std::thread::hardware_concurrency()))
-                            : choose_uniform_tile(work);
+  const int64_t out = channels_of(shape, direction).out;
+  const ConvWork work = work_of(push, out, family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
+  const auto tuned =
+      family == kShuffle ? tuned_conv_tile(shuffle_key(shape, direction), out, caps) : std::nullopt;
+  const ConvTile tile = tuned                ? *tuned
+                        : family == kShuffle ? standard_shuffle_tile(push, out, caps)
+                                             : choose_uniform_tile(work);
   push.bias = static_cast<int32_t>(packing.weight_vectors());
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
   recorder.dispatch(

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "graph/conv/conv_shape.h"
+#include "graph/conv/conv_tuning.h"
 #include "runtime/recorder.h"
 
 namespace vkopple {
@@ -34,6 +36,10 @@ bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);
 
 /// Bytes of scratch that record_conv_product takes, for packed weights.
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction);
+
+/// What can be tuned, where the family that runs has tiles to choose.
+std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
+                                              const Caps& caps);
 
 /// Records one product. Stride 1 or 2 (for kForward any), any kernel, padding and dilation. Throws Error for a
 /// kernel that the device can't run.

@@ -59,6 +59,10 @@ SharedWork work_of(const ProductPush& push) {
           .in4 = push.in4};
 }
 
+std::string key_of(const ConvShape& shape, ConvDirection direction) {
+  return tuning_key(direction == ConvDirection::kForward ? kSharedForward : kSharedTransposed, shape);
+}
+
 /// Tiles of one phase in the first two directions, phases in the third.
 Groups groups_of(const SharedWork& work, const SharedTile& tile, int64_t channel_tiles, const Caps& caps) {
   const int64_t count = (work.pixels + tile.tile_pixels() - 1) / tile.tile_pixels() * channel_tiles;
@@ -78,6 +82,11 @@ uint64_t conv_shared_scratch(const ConvShape& shape, ConvDirection direction) {
   return Packed(shape, direction).bytes();
 }
 
+ConvTuning conv_shared_tuning(const ConvShape& shape, ConvDirection direction, const ProductPush& push,
+                              const Caps& caps) {
+  return shared_tuning(key_of(shape, direction), choose_shared_tile(work_of(push), caps), caps);
+}
+
 void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirection direction, ProductPush push,
                         const ConvOperands& operands, const Slice& scratch) {
   const Caps& caps = recorder.caps();
@@ -86,7 +95,8 @@ void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirectio
   record_pack(recorder, packed, direction, operands, weights);
 
   const SharedWork work = work_of(push);
-  const SharedTile tile = choose_shared_tile(work, caps);
+  const auto tuned = tuned_shared_tile(key_of(shape, direction), caps);
+  const SharedTile tile = tuned ? *tuned : choose_shared_tile(work, caps);
   push.bias = static_cast<int32_t>(packed.weight_vectors());
   push.tiles = static_cast<int32_t>((4 * work.out4 + tile.tile_channels() - 1) / tile.tile_channels());
   recorder.dispatch("conv_shared",

@@ -2,6 +2,7 @@
 
 #include "graph/conv/conv_product.h"
 #include "graph/conv/conv_push.h"
+#include "graph/conv/conv_tuning.h"
 
 namespace vkopple {
 
@@ -13,6 +14,10 @@ bool can_conv_shared(const Caps& caps);
 
 /// Bytes of scratch, for packed weights.
 uint64_t conv_shared_scratch(const ConvShape& shape, ConvDirection direction);
+
+/// What can be tuned.
+ConvTuning conv_shared_tuning(const ConvShape& shape, ConvDirection direction, const ProductPush& push,
+                              const Caps& caps);
 
 /// Records one product; `push` describes the product but for tiles and bias.
 void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirection direction, ProductPush push,

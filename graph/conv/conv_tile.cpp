@@ -29,6 +29,8 @@ int64_t workgroups(const ConvTile& tile, const ConvWork& work) {
 
 }  // namespace
 
+std::span<const ConvTile> conv_tiles() { return kTiles; }
+
 ConvTile choose_shuffle_tile(const ConvWork& work, int64_t threads) {
   ConvTile best = kTiles.back();
   double best_cost = std::numeric_limits<double>::infinity();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace vkopple {
 
@@ -11,6 +12,9 @@ struct ConvTile {
 };
 
 constexpr int64_t kMostTileChannels = 32;
+
+/// Tiles worth a try.
+std::span<const ConvTile> conv_tiles();
 
 /// What a tile is chosen by.
 struct ConvWork {

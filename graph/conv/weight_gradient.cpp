@@ -71,6 +71,11 @@ uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, Weigh
   }
 }
 
+std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps) {
+  if (choose(shape, caps, WeightGradientKernel::kAuto) != WeightGradientKernel::kShared) return std::nullopt;
+  return shared_tuning(shape, caps);
+}
+
 void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x, Slice dy, Slice dw,
                             uint32_t accumulate, Slice scratch, WeightGradientKernel kernel) {
   const Caps& caps = recorder.caps();

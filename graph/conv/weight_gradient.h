@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "graph/conv/conv_shape.h"
+#include "graph/conv/conv_tuning.h"
 #include "graph/tensor.h"
 #include "runtime/recorder.h"
 
@@ -22,6 +24,9 @@ bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradien
 /// Bytes that record_weight_gradient() needs.
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps,
                                  WeightGradientKernel kernel = WeightGradientKernel::kAuto);
+
+/// What can be tuned, where the kernel that runs has tiles to choose.
+std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps);
 
 /// dw[co][ci][ky][kx] (+)= Σ n,yo,xo dy[n,co,yo,xo] · x[n, ci, yo·stride + ky·dilation − padding, …], x zero
 /// outside. x and dy NC4HW4 with zeros in their padding lanes, dw row-major (co, ci, kernel, kernel).

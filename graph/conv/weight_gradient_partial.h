@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "graph/conv/conv_shape.h"
-#include "graph/conv/shared_tile.h"
+#include "graph/conv/conv_tuning.h"
 #include "graph/tensor.h"
 #include "runtime/recorder.h"
 
@@ -60,6 +60,7 @@ struct SharedPlan {
   WeightGradientPartial partial;
 };
 bool can_shared(const Caps& caps);
+ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps);
 SharedPlan plan_shared(const ConvShape& shape, const Caps& caps);
 void record_shared(Recorder& recorder, const ConvShape& shape, const SharedPlan& plan, const Slice& x,
                    const Slice& dy, const Slice& partial);

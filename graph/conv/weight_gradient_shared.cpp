@@ -19,6 +19,10 @@ struct SharedPush {
   int32_t step_rows, step_columns, step_images;
 };
 
+SharedGradientWork work_of(const ConvShape& s) {
+  return {.pixels = s.n * s.ho * s.wo, .rows4 = blocks4(s.co), .columns4 = s.kernel * s.kernel * blocks4(s.ci)};
+}
+
 }  // namespace
 
 bool can_shared(const Caps& caps) {
@@ -27,10 +31,16 @@ bool can_shared(const Caps& caps) {
                      [&](const SharedGradientTile& tile) { return fits(tile, caps); });
 }
 
+ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps) {
+  return shared_gradient_tuning(tuning_key(kSharedGradient, shape),
+                                choose_shared_gradient_tile(work_of(shape), caps), caps);
+}
+
 SharedPlan plan_shared(const ConvShape& s, const Caps& caps) {
-  const SharedGradientWork work{
-      .pixels = s.n * s.ho * s.wo, .rows4 = blocks4(s.co), .columns4 = s.kernel * s.kernel * blocks4(s.ci)};
-  SharedPlan plan{.tile = choose_shared_gradient_tile(work, caps), .strip_pixels = 0, .partial = {}};
+  const SharedGradientWork work = work_of(s);
+  const auto tuned = tuned_shared_gradient_tile(tuning_key(kSharedGradient, s), caps);
+  SharedPlan plan{
+      .tile = tuned ? *tuned : choose_shared_gradient_tile(work, caps), .strip_pixels = 0, .partial = {}};
   const int64_t depth = plan.tile.depth;
   plan.row_groups = ceil_div(work.rows4, plan.tile.tile_rows4());
   plan.column_groups = ceil_div(work.columns4, plan.tile.tile_columns4());

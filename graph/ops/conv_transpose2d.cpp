@@ -8,10 +8,7 @@
 #include "graph/conv/weight_gradient.h"
 
 namespace vkopple {
-namespace {
-
-/// The convolution of which this is the transpose: from y (its x) to x (its y).
-ConvShape convolution_of(const Shape& x, const Shape& w) {
+ConvShape ConvTranspose2d::convolution_of(const Shape& x, const Shape& w) {
   return {.n = x[0],
           .ci = w[1],
           .h = 2 * x[2],
@@ -24,8 +21,6 @@ ConvShape convolution_of(const Shape& x, const Shape& w) {
           .padding = w[2] == 3 ? 1 : 0,
           .dilation = 1};
 }
-
-}  // namespace
 
 std::vector<TensorSpec> ConvTranspose2d::infer(std::span<const TensorSpec> x) const {
   require(x.size() == (has_bias_ ? 3U : 2U), "takes x and weights, and a bias where it has one");

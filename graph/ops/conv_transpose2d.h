@@ -25,6 +25,8 @@ class ConvTranspose2d : public Op {
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
+  /// The convolution of which this is the transpose: from y (its x) to x (its y).
+  static ConvShape convolution_of(const Shape& x, const Shape& w);
 
  private:
   ConvTranspose2dOptions options_;

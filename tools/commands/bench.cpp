@@ -15,6 +15,7 @@
 #include "train/conv_benchmark.h"
 #include "train/op_table.h"
 #include "train/peak.h"
+#include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
@@ -34,9 +35,13 @@ struct Options {
 };
 
 nlohmann::ordered_json header(const Device& device, const Options& options) {
-  return {{"what", options.what},         {"preset", options.preset},
-          {"set", options.set},           {"batch", options.benchmark.batch},
-          {"device", device.caps().name}, {"driver", device.caps().driver}};
+  return {{"what", options.what},
+          {"preset", options.preset},
+          {"set", options.set},
+          {"batch", options.benchmark.batch},
+          {"device", device.caps().name},
+          {"driver", device.caps().driver},
+          {"tuned", device.caps().tuned != nullptr}};
 }
 
 void add(nlohmann::ordered_json& out, const BenchmarkResult& r) {
@@ -106,8 +111,8 @@ void print_by_op(const BenchmarkResult& r) {
 void print(const Device& device, const Options& options, const BenchmarkResult& r) {
   std::string preset = options.preset;
   for (const std::string& assignment : options.set) preset += " with " + assignment;
-  fmt::print("{} of {}, batch {}, on {} ({})\n", options.what, preset, options.benchmark.batch,
-             device.caps().name, device.caps().driver);
+  fmt::print("{} of {}, batch {}, on {} ({}){}\n", options.what, preset, options.benchmark.batch,
+             device.caps().name, device.caps().driver, device.caps().tuned ? ", tuned" : "");
   fmt::print("  {:.4f} s a step, {:.2f} {} a second; {:.1f} GFLOP each, {:.1f} GFLOP/s\n", r.seconds_per_step,
              r.triplets_per_second, options.what == "infer" ? "images" : "triplets", r.gflop_per_triplet,
              r.gflop_per_triplet * r.triplets_per_second);
@@ -154,7 +159,10 @@ void run(const Options& options) {
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
   Config config = Config::load(options.preset, options.set);
   if (options.precision) config.training.precision = *options.precision;
-  const Device device({.selector = options.device, .winograd = options.winograd, .kernels = options.kernels});
+  const Device device({.selector = options.device,
+                       .winograd = options.winograd,
+                       .kernels = options.kernels,
+                       .tuned = load_tuned_choices});
   nlohmann::ordered_json out = header(device, options);
   if (options.what == "conv") {
     const auto timings =

@@ -18,6 +18,7 @@
 #include "train/evaluate.h"
 #include "train/image_io.h"
 #include "train/pictures.h"
+#include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
@@ -53,7 +54,7 @@ void write_grid(const Options& o, std::vector<std::vector<RgbImage>> grid, bool 
 }
 
 void run(const Options& o) {
-  const Device device({.selector = o.device});
+  const Device device({.selector = o.device, .tuned = load_tuned_choices});
   const LoadedModel model = load_model(device, o.model);
   const auto batch = static_cast<int>(std::min<int64_t>(o.batch, o.images));
   const auto source = open_data(o, device, model, batch);

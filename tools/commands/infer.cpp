@@ -21,6 +21,7 @@
 #include "train/interrupt.h"
 #include "train/pictures.h"
 #include "train/seen_image.h"
+#include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
@@ -131,7 +132,7 @@ std::optional<RgbImage> try_to_read(const std::string& path, CountProgress& prog
 }
 
 void run(const Options& o) {
-  const Device device({.selector = o.device, .kernels = o.kernels});
+  const Device device({.selector = o.device, .kernels = o.kernels, .tuned = load_tuned_choices});
   const LoadedModel model = load_model(device, o.model);
   Inference inference(o, device, model);
   const Interrupt interrupt;

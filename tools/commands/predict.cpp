@@ -18,6 +18,7 @@
 #include "train/image_io.h"
 #include "train/pictures.h"
 #include "train/predictor.h"
+#include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
@@ -101,7 +102,7 @@ void report(const Options& o, const std::string& columns, const nlohmann::ordere
 }
 
 void run(const Options& o) {
-  const Device device({.selector = o.device});
+  const Device device({.selector = o.device, .tuned = load_tuned_choices});
   const LoadedModel model = load_model(device, o.model);
   const ModelConfig& config = model.config.model;
   const auto poses = read_frame_poses(o.poses, {o.frames[0], o.frames[1], o.frames[2]}, config.fov);

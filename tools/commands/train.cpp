@@ -17,6 +17,7 @@
 #include "train/progress.h"
 #include "train/run_folder.h"
 #include "train/trainer.h"
+#include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
@@ -94,7 +95,8 @@ void run(const Options& o) {
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
-  const Device device({.selector = o.device, .winograd = o.winograd, .kernels = o.kernels});
+  const Device device(
+      {.selector = o.device, .winograd = o.winograd, .kernels = o.kernels, .tuned = load_tuned_choices});
   const Interrupt interrupt;
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
   Progress progress(trainer.plan().steps());

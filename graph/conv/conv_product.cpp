@@ -226,7 +226,7 @@ uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
 
 std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
                                               const Caps& caps) {
-  const std::string_view family = chosen_kernel({}, caps);
+  const std::string_view family = chosen_kernel({}, shape, direction, caps);
   const ProductPush push = product_push(shape, direction);
   if (family == kShared) return conv_shared_tuning(shape, direction, push, caps);
   if (family != kShuffle) return std::nullopt;

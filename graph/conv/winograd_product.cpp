@@ -26,9 +26,9 @@ int64_t packed_channels(int64_t channels) {
   return ceil_div(channels, 32) * 32;
 }
 
-/// Nanoseconds of a subgroup's work for one tile and frequency, fitted to measurements on lavapipe (2 cores of
-/// AMD Zen 5): 6 for a fetch, 0.19 for a multiply-add with its share of the shuffles, 0.25 for carrying a sum
-/// through the loop, 17 for a vector stored.
+/// Nanoseconds of a subgroup's work for one tile and frequency, from single costs measured on lavapipe (2 cores
+/// of AMD Zen 5): 6 for a fetch, 0.19 for a multiply-add with its share of the shuffles, 0.25 for carrying a
+/// sum through the loop, 17 for a vector stored.
 double tile_cost(const ProductTile& tile, int64_t in4) {
   const auto vectors = static_cast<double>(tile.out4 * tile.tiles);
   const double step = 6.0 * static_cast<double>(tile.out4 / 2 + tile.tiles) + (0.19 * 16 + 0.25 * 4) * vectors;

@@ -31,7 +31,7 @@ struct Plan {
   }
 };
 
-/// Nanoseconds of a subgroup for a round of the loop, fitted as those of winograd_product.
+/// Nanoseconds of a subgroup for a round of the loop, from the same costs as those of winograd_product.
 double round_cost(int64_t lane_in4, int64_t lane_out4) {
   const auto sums = static_cast<double>(16 * lane_in4 * lane_out4);
   return 6.0 * static_cast<double>(kRound * lane_in4 + lane_out4) + (0.19 * kRound + 0.25) * sums;

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "graph/conv/weight_gradient.h"
 #include "graph/conv/winograd.h"
@@ -33,7 +31,9 @@ std::string_view direct_kernel(std::string_view kernel) {
   return is_conv_kernel(kernel) ? kernel : std::string_view{};
 }
 
-int64_t threads() { return std::max(1U, std::thread::hardware_concurrency()); }
+/// Cores that costs are compared for. Not those at hand, for the choice decides how sums are rounded, and
+/// results shall not depend on how many cores a process may use.
+constexpr int64_t kThreads = 2;
 
 /// The algorithm of least cost; cost(tile) is Winograd's in nanoseconds.
 template <class Cost>
@@ -88,18 +88,17 @@ ConvAlgorithm choose_convolution(const ConvShape& s, ConvDirection direction, co
   require_can(kernel, s, caps);
   if (const auto forced = forced_algorithm(kernel)) return *forced;
   // 0.31 ns for 8 multiply-adds of one lane each, measured where channels fill the direct kernel's tiles.
-  const double direct = s.flop() / 16 * 0.31 / static_cast<double>(threads());
-  return cheapest(s, caps, direct, [&](WinogradTile tile) {
-    return winograd_product_cost(s, direction, tile, caps, threads());
-  });
+  const double direct = s.flop() / 16 * 0.31 / static_cast<double>(kThreads);
+  return cheapest(s, caps, direct,
+                  [&](WinogradTile tile) { return winograd_product_cost(s, direction, tile, caps, kThreads); });
 }
 
 ConvAlgorithm choose_weight_gradient(const ConvShape& s, const Caps& caps, std::string_view kernel) {
   require_can(kernel, s, caps);
   if (const auto forced = forced_algorithm(kernel)) return *forced;
-  const double direct = s.flop() / 16 * 0.33 / static_cast<double>(threads());
+  const double direct = s.flop() / 16 * 0.33 / static_cast<double>(kThreads);
   return cheapest(s, caps, direct,
-                  [&](WinogradTile tile) { return winograd_weight_gradient_cost(s, tile, caps, threads()); });
+                  [&](WinogradTile tile) { return winograd_weight_gradient_cost(s, tile, caps, kThreads); });
 }
 
 uint64_t convolution_scratch(const ConvShape& shape, ConvDirection direction, const Caps& caps,

@@ -59,6 +59,7 @@ struct Caps {
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
   bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
+  bool row_stores = false;  ///< kernels of subgroups store lane by lane at uniform addresses (row_store.glsl)
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
   KernelFamily kernels = KernelFamily::kAuto;  ///< a choice, for convolutions
   bool winograd = true;  ///< a choice: convolutions may use Winograd's algorithm where it is faster

@@ -48,6 +48,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
       throw Error("the texel access path needs 64-bit integers in shaders, which " + caps_.name + " lacks");
     caps_.access = *options.access;
   }
+  caps_.row_stores = options.row_stores.value_or(caps_.row_stores) && caps_.access == AccessPath::kTexel;
   caps_.exact_sums = options.exact_sums;
   caps_.kernels = options.kernels;
   if (const std::string why = missing_for(caps_.kernels, caps_); !why.empty()) throw Error(why);

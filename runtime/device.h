@@ -19,6 +19,7 @@ struct DeviceOptions {
   std::string selector;                        ///< as device_selector takes it
   MessageSink on_message;                      ///< loads the validation layer and receives what it says
   std::optional<AccessPath> access;            ///< forces an access path (tests run both)
+  std::optional<bool> row_stores;              ///< Caps::row_stores; none: where they are known to be faster
   bool exact_sums = false;                     ///< Caps::exact_sums
   bool winograd = true;                        ///< Caps::winograd
   KernelFamily kernels = KernelFamily::kAuto;  ///< Caps::kernels; Error where the device can't run the family

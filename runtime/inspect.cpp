@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runtime/instance.h"
+#include "runtime/quirks.h"
 #include "runtime/vulkan_error.h"
 
 namespace vkopple {
@@ -15,6 +16,7 @@ namespace {
 /// bindings.
 constexpr uint64_t kLargeTexelBuffer = uint64_t{1} << 26;
 constexpr uint32_t kPushConstantBytes = 128;
+constexpr uint32_t kMostRowLanes = 16;  ///< kMostLanes of row_store.glsl
 
 DeviceType type_of(VkPhysicalDeviceType type) {
   switch (type) {
@@ -116,6 +118,8 @@ void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& 
     caps.subgroup_arithmetic = (subgroup.supportedOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) != 0;
   }
   caps.lavapipe = has_driver_properties && driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE;
+  caps.row_stores = caps.lavapipe && caps.subgroup_shuffle && caps.subgroup_size <= kMostRowLanes &&
+                    stores_uniform_addresses_once(driver.driverInfo);
   read_limits(p.limits, caps);
 }
 

@@ -9,10 +9,11 @@
 namespace vkopple {
 namespace {
 
-/// Specialization constants that access.glsl and subgroup.glsl may use in any shader.
+/// Specialization constants that access.glsl, subgroup.glsl and row_store.glsl may use in any shader.
 constexpr uint32_t kZeroOutsideId = 100;
 constexpr uint32_t kSubgroupSizeId = 101;
 constexpr uint32_t kFloat16BindingsId = 102;
+constexpr uint32_t kRowStoresId = 103;
 constexpr uint32_t kPushConstantBytes = 128;
 
 VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
@@ -109,6 +110,7 @@ void PipelineSet::create(Pipeline& pipeline, const Key& key) {
   set(kZeroOutsideId, device_->caps().lavapipe ? 1 : 0);
   set(kSubgroupSizeId, device_->caps().subgroup_size);
   set(kFloat16BindingsId, key.float16_bindings);
+  set(kRowStoresId, device_->caps().row_stores ? 1 : 0);
   VkSpecializationInfo specialization{};
   specialization.mapEntryCount = static_cast<uint32_t>(entries.size());
   specialization.pMapEntries = entries.data();

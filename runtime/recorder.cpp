@@ -17,6 +17,9 @@ constexpr uint32_t kMostStamps = 65536;
 /// A chunk of this size takes a slow integrated GPU well under a second; watchdogs wait for two or more.
 constexpr double kChunkFlop = 40e9;
 constexpr size_t kChunkDispatches = 512;
+/// The last push constants: what shaders/include/row_store.glsl looks digits up in.
+constexpr std::array<uint32_t, 8> kRowDigits{0, 1, 2, 3, 4, 5, 6, 7};
+constexpr uint32_t kRowDigitsAt = 96;
 
 void memory_barrier(VkCommandBuffer buffer, VkPipelineStageFlags from, VkAccessFlags written,
                     VkPipelineStageFlags to, VkAccessFlags used) {
@@ -227,6 +230,9 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
   vkCmdBindDescriptorSets(buffer_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.layout, 0, 1, &set, 0, nullptr);
   if (push.bytes() > 0)
     vkCmdPushConstants(buffer_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, push.bytes(), push.data());
+  if (caps().row_stores && push.bytes() <= kRowDigitsAt)
+    vkCmdPushConstants(buffer_, pipeline.layout, VK_SHADER_STAGE_COMPUTE_BIT, kRowDigitsAt, sizeof(kRowDigits),
+                       kRowDigits.data());
   vkCmdDispatch(buffer_, groups[0], groups[1], groups[2]);
   ++commands_->dispatches_;
   ++chunk_dispatches_;

@@ -8,9 +8,10 @@
 namespace vkopple {
 namespace {
 
-/// Of one chunk's transformed values. Measured on 2 cores of AMD Zen 5 (1 MiB of L2 each, 32 MiB of L3): 6 to
-/// 24 MiB run alike, all tiles at once 10 to 15 % slower for 64 channels at 128 x 128.
-constexpr int64_t kCacheBytes = 12 << 20;
+/// Of one chunk's transformed values, for 64 channels at 128 x 128. Measured on 2 cores of AMD Zen 5 (1 MiB of
+/// L2 each, 32 MiB of L3): 6 to 24 MiB run alike, all tiles at once 10 to 15 % slower; on an Intel with 2 MiB
+/// of L2, where a dispatch costs 0.1 ms: 12 and 24 alike, 6 and all at once 20 % slower.
+constexpr int64_t kCacheBytes = 16 << 20;
 
 int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
 int32_t i32(int64_t value) { return static_cast<int32_t>(value); }
@@ -39,7 +40,9 @@ void record_winograd_transform(Recorder& recorder, const char* shader, const Win
                                std::initializer_list<Slice> bindings, bool has_bias,
                                const std::vector<uint32_t>& constants) {
   const int64_t first = first_block * chunks.width;
-  const int64_t local = std::min<int64_t>(chunks.width, recorder.caps().flat_workgroup());
+  const Caps& caps = recorder.caps();
+  const int64_t local =
+      std::min<int64_t>(chunks.width, caps.row_stores ? caps.subgroup_size : caps.flat_workgroup());
   const WinogradPush push{.images = i32(chunks.images),
                           .channels4 = i32(blocks4(tensor.channels)),
                           .h = i32(tensor.h),

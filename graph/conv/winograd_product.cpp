@@ -17,22 +17,31 @@ int32_t i32(int64_t value) { return static_cast<int32_t>(value); }
 struct ProductTile {
   int64_t out4, tiles;
 };
-constexpr std::array<ProductTile, 7> kTiles{{{8, 8}, {8, 4}, {8, 2}, {8, 1}, {4, 8}, {4, 4}, {2, 8}}};
+constexpr std::array<ProductTile, 9> kTiles{
+    {{8, 8}, {16, 4}, {16, 2}, {8, 4}, {8, 2}, {8, 1}, {4, 8}, {4, 4}, {2, 8}}};
 
 /// Output channels that weights are transformed for: whole tiles of any size that could be chosen.
 int64_t packed_channels(int64_t channels) {
-  for (const int64_t most : {8, 16})
+  for (const int64_t most : {8, 16, 32})
     if (channels <= most) return most;
-  return ceil_div(channels, 32) * 32;
+  return ceil_div(channels, 64) * 64;
+}
+
+/// Blocks of 8 output channels whose weights the lanes of a subgroup fetch at once.
+int64_t shared_blocks(const ProductTile& tile, int64_t lanes) {
+  return lanes >= 16 && tile.out4 % 4 == 0 ? 2 : 1;
 }
 
 /// Nanoseconds of a subgroup's work for one tile and frequency, from single costs measured on lavapipe (2 cores
-/// of AMD Zen 5): 6 for a fetch, 0.19 for a multiply-add with its share of the shuffles, 0.25 for carrying a
-/// sum through the loop, 17 for a vector stored.
-double tile_cost(const ProductTile& tile, int64_t in4) {
+/// of AMD Zen 5): for 8 lanes, 6 for a fetch and 17 (7 as a row) for a vector stored; for any number of lanes
+/// 0.19 for a multiply-add with its share of the shuffles and 0.25 for carrying a sum through the loop. On an
+/// Intel with AVX-512 all are about twice that.
+double tile_cost(const ProductTile& tile, int64_t in4, int64_t lanes, bool row_stores) {
   const auto vectors = static_cast<double>(tile.out4 * tile.tiles);
-  const double step = 6.0 * static_cast<double>(tile.out4 / 2 + tile.tiles) + (0.19 * 16 + 0.25 * 4) * vectors;
-  return static_cast<double>(in4) * step + 17 * vectors + 100;
+  const auto eights = static_cast<double>(lanes) / 8;
+  const double fetches = static_cast<double>(tile.out4 / (2 * shared_blocks(tile, lanes)) + tile.tiles);
+  const double step = 6.0 * eights * fetches + (0.19 * 16 + 0.25 * 4) * vectors;
+  return static_cast<double>(in4) * step + (row_stores ? 7 : 17) * eights * vectors + 100;
 }
 
 struct Plan {
@@ -53,12 +62,12 @@ struct Plan {
   }
 };
 
-void choose_product_tile(Plan& plan, int64_t all_tiles, int64_t frequencies) {
+void choose_product_tile(Plan& plan, int64_t all_tiles, int64_t frequencies, bool row_stores) {
   plan.product_cost = std::numeric_limits<double>::infinity();
   for (const ProductTile& tile : kTiles) {
     const int64_t groups =
         frequencies * ceil_div(blocks4(plan.out), tile.out4) * ceil_div(all_tiles, plan.lanes * tile.tiles);
-    const double cost = tile_cost(tile, blocks4(plan.in)) * static_cast<double>(groups);
+    const double cost = tile_cost(tile, blocks4(plan.in), plan.lanes, row_stores) * static_cast<double>(groups);
     if (cost >= plan.product_cost) continue;
     plan.product_cost = cost;
     plan.product = tile;
@@ -78,7 +87,8 @@ Plan make_plan(const ConvShape& s, ConvDirection direction, WinogradTile tile, c
             .offset = forward ? -s.padding : s.padding - 2,
             .lanes = caps.subgroup_size};
   const auto m = static_cast<int64_t>(tile);
-  choose_product_tile(plan, s.n * ceil_div(plan.out_h, m) * ceil_div(plan.out_w, m), (m + 2) * (m + 2));
+  choose_product_tile(plan, s.n * ceil_div(plan.out_h, m) * ceil_div(plan.out_w, m), (m + 2) * (m + 2),
+                      caps.row_stores);
   plan.chunks = winograd_chunks(tile, s.n, plan.out_h, plan.out_w, plan.lanes * plan.product.tiles,
                                 blocks4(plan.in) + blocks4(plan.out));
   return plan;
@@ -89,7 +99,7 @@ struct WeightPush {
 };
 
 struct ProductPush {
-  int32_t in4, out4, out8;
+  int32_t in4, out4, out8, frequencies;
 };
 
 }  // namespace
@@ -119,10 +129,13 @@ void record_winograd_product(Recorder& recorder, const ConvShape& shape, ConvDir
     const int64_t blocks = std::min(chunks.chunk_blocks, chunks.blocks() - first);
     record_winograd_transform(recorder, "winograd_input", chunks, first, blocks,
                               {plan.in, plan.in_h, plan.in_w, plan.offset}, {operands.in, inputs});
-    recorder.dispatch("winograd_product", {u32(plan.lanes), u32(plan.product.out4), u32(plan.product.tiles)},
-                      {inputs, weights, products},
-                      ProductPush{i32(in4), i32(out4), i32(packed_channels(plan.out) / 8)},
-                      {u32(ceil_div(out4, plan.product.out4)), u32(chunks.frequencies()), u32(blocks)});
+    recorder.dispatch(
+        "winograd_product",
+        {u32(plan.lanes), u32(plan.product.out4), u32(plan.product.tiles),
+         u32(shared_blocks(plan.product, plan.lanes))},
+        {inputs, weights, products},
+        ProductPush{i32(in4), i32(out4), i32(packed_channels(plan.out) / 8), i32(chunks.frequencies())},
+        {u32(ceil_div(out4, plan.product.out4)), u32(chunks.frequencies()), u32(blocks)});
     record_winograd_transform(recorder, "winograd_output", chunks, first, blocks,
                               {plan.out, plan.out_h, plan.out_w}, {products, operands.bias, operands.out},
                               static_cast<bool>(operands.bias), {operands.accumulate, whole ? 1U : 0U});
@@ -133,14 +146,15 @@ double winograd_product_cost(const ConvShape& shape, ConvDirection direction, Wi
                              const Caps& caps, int64_t threads) {
   const Plan plan = make_plan(shape, direction, tile, caps);
   const auto per_lane = [&](int64_t vectors, double cost) {
-    return static_cast<double>(ceil_div(vectors, plan.lanes)) * cost;
+    return static_cast<double>(ceil_div(vectors, 8)) * cost;
   };
   const auto f = static_cast<double>(plan.chunks.frequencies());
   const auto made = static_cast<double>(plan.chunks.made * plan.chunks.made);
+  const double store = caps.row_stores ? 7 : 17;  // as in tile_cost
   const double weights = per_lane(plan.weight_vectors(), 36 * 6 + 20 * f);
   const double transforms =
-      per_lane(plan.chunks.blocks() * plan.chunks.width * blocks4(plan.in), 27 * f) +
-      per_lane(plan.chunks.blocks() * plan.chunks.width * blocks4(plan.out), 9 * f + 20 * made);
+      per_lane(plan.chunks.blocks() * plan.chunks.width * blocks4(plan.in), (10 + store) * f) +
+      per_lane(plan.chunks.blocks() * plan.chunks.width * blocks4(plan.out), 9 * f + (3 + store) * made);
   const int64_t chunks = ceil_div(plan.chunks.blocks(), plan.chunks.chunk_blocks);
   return (weights + transforms + plan.product_cost) / static_cast<double>(threads) +
          15e3 * static_cast<double>(1 + 3 * chunks);

@@ -32,9 +32,10 @@ struct Plan {
 };
 
 /// Nanoseconds of a subgroup for a round of the loop, from the same costs as those of winograd_product.
-double round_cost(int64_t lane_in4, int64_t lane_out4) {
+double round_cost(int64_t lane_in4, int64_t lane_out4, int64_t lanes) {
   const auto sums = static_cast<double>(16 * lane_in4 * lane_out4);
-  return 6.0 * static_cast<double>(kRound * lane_in4 + lane_out4) + (0.19 * kRound + 0.25) * sums;
+  const double fetch = 6.0 / 8 * static_cast<double>(lanes);
+  return fetch * static_cast<double>(kRound * lane_in4 + lane_out4) + (0.19 * kRound + 0.25) * sums;
 }
 
 Plan make_plan(const ConvShape& s, WinogradTile tile, const Caps& caps) {
@@ -47,16 +48,17 @@ Plan make_plan(const ConvShape& s, WinogradTile tile, const Caps& caps) {
             .lane_out4 = 8,
             .product_cost = std::numeric_limits<double>::infinity(),
             .chunks = {}};
-  const int64_t width = std::min(kBlockWidth, ceil_div(tiles, kRound) * kRound);
+  const int64_t step = std::max<int64_t>(kRound, caps.subgroup_size);  // transforms take a subgroup's tiles
+  const int64_t width = std::min(kBlockWidth, ceil_div(tiles, step) * step);
   plan.chunks = winograd_chunks(tile, s.n, s.ho, s.wo, width, plan.in4 + plan.out4, kLongestSum);
   const int64_t rounds = ceil_div(tiles, kRound);
   for (const int64_t lane_out4 : {8, 4})
     for (const int64_t lane_in4 : {2, 1}) {
       const int64_t groups = plan.chunks.frequencies() * ceil_div(plan.in4, plan.lanes * lane_in4) *
                              ceil_div(plan.out4, lane_out4);
-      const double cost =
-          static_cast<double>(groups) * (static_cast<double>(rounds) * round_cost(lane_in4, lane_out4) +
-                                         70 * static_cast<double>(lane_in4 * lane_out4));
+      const double cost = static_cast<double>(groups) *
+                          (static_cast<double>(rounds) * round_cost(lane_in4, lane_out4, plan.lanes) +
+                           70 * static_cast<double>(lane_in4 * lane_out4));
       if (cost >= plan.product_cost) continue;
       plan.product_cost = cost;
       plan.lane_in4 = lane_in4;
@@ -113,9 +115,11 @@ void record_winograd_weight_gradient(Recorder& recorder, const ConvShape& s, con
 double winograd_weight_gradient_cost(const ConvShape& s, WinogradTile tile, const Caps& caps, int64_t threads) {
   const Plan plan = make_plan(s, tile, caps);
   const auto f = static_cast<double>(plan.chunks.frequencies());
-  const auto groups = [&](int64_t vectors) { return static_cast<double>(ceil_div(vectors, plan.lanes)); };
+  const auto groups = [&](int64_t vectors) { return static_cast<double>(ceil_div(vectors, 8)); };
+  const double store = caps.row_stores ? 7 : 17;  // as in winograd_product
   const int64_t tiles = plan.chunks.blocks() * plan.chunks.width;
-  const double transforms = groups(tiles * plan.in4) * 27 * f + groups(tiles * plan.out4) * 23 * f;
+  const double transforms =
+      groups(tiles * plan.in4) * (10 + store) * f + groups(tiles * plan.out4) * (6 + store) * f;
   const double weights = groups(s.co * plan.in4) * (9 * f + 9 * 20);
   const int64_t chunks = ceil_div(plan.chunks.blocks(), plan.chunks.chunk_blocks);
   return (weights + transforms + plan.product_cost) / static_cast<double>(threads) +

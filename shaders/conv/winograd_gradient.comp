@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "row_store.glsl"
 #include "winograd.glsl"
 #include "winograd_tiles.glsl"
 
@@ -12,6 +13,7 @@ READ4(0, dy)
 WRITE4(1, transformed)
 
 void main() {
+  ALIGN_SPILLS(transformed)
   Tile tile = find_tile();
   int y0 = tile.row * kMade;
   int x0 = tile.column * kMade;
@@ -27,12 +29,12 @@ void main() {
     }
     rows[i] = gradient_transform(line);
   }
-  int to = first_frequency();
+  int to = first_frequency(known_block(), known_vector(), known_first_of_group());
   int step_ = frequency_step();
   [[unroll]] for (int j = 0; j < kRead; ++j) {
     vec4 line[kMade];
     [[unroll]] for (int i = 0; i < kMade; ++i) line[i] = rows[i][j];
     vec4 column[kRead] = gradient_transform(line);
-    [[unroll]] for (int i = 0; i < kRead; ++i) store4(transformed, to + (i * kRead + j) * step_, column[i])
+    [[unroll]] for (int i = 0; i < kRead; ++i) store4_row(transformed, true, to + (i * kRead + j) * step_, column[i])
   }
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "row_store.glsl"
 #include "winograd.glsl"
 #include "winograd_tiles.glsl"
 
@@ -11,6 +12,7 @@ READ4(0, x)
 WRITE4(1, transformed)
 
 void main() {
+  ALIGN_SPILLS(transformed)
   Tile tile = find_tile();
   int y0 = tile.row * kMade + p.offset;
   int x0 = tile.column * kMade + p.offset;
@@ -26,12 +28,12 @@ void main() {
     }
     rows[i] = input_transform(line);
   }
-  int to = first_frequency();
+  int to = first_frequency(known_block(), known_vector(), known_first_of_group());
   int step_ = frequency_step();
   [[unroll]] for (int j = 0; j < kRead; ++j) {
     vec4 line[kRead];
     [[unroll]] for (int i = 0; i < kRead; ++i) line[i] = rows[i][j];
     line = input_transform(line);
-    [[unroll]] for (int i = 0; i < kRead; ++i) store4(transformed, to + (i * kRead + j) * step_, line[i])
+    [[unroll]] for (int i = 0; i < kRead; ++i) store4_row(transformed, true, to + (i * kRead + j) * step_, line[i])
   }
 }

@@ -28,7 +28,8 @@ layout(constant_id = 102) const uint kFloat16Bindings = 0u;
 #define WRITE4(number, name) \
   FLOAT16_FLAG(number, name) \
   layout(std430, binding = number) buffer name##_w4 { u64vec2 name[]; }; \
-  layout(std430, binding = number) buffer name##_float16_w4 { uint64_t name##_float16[]; };
+  layout(std430, binding = number) buffer name##_float16_w4 { uint64_t name##_float16[]; }; \
+  layout(std430, binding = number) buffer name##_pairs_w4 { u64vec4 name##_pairs[]; };
 #define store4(name, i, v) \
   { \
     vec4 stored_ = v; \

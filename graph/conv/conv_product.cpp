@@ -255,10 +255,12 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
                                              : choose_uniform_tile(work);
   push.bias = static_cast<int32_t>(packing.weight_vectors());
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
+  const bool rows = family == kShuffle && caps.row_stores && operands.accumulate == 0 && push.phases == 1 &&
+                    push.out_h * push.out_w % caps.subgroup_size == 0;
   recorder.dispatch(
       "conv_product." + std::string(family),
       {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels),
-       operands.accumulate, straight_vectors(push, tile), caps.exact_sums ? 1U : 0U},
+       operands.accumulate, straight_vectors(push, tile), caps.exact_sums ? 1U : 0U, rows ? 1U : 0U},
       {operands.in, packed, operands.out}, push, groups_of(push, tile, work.lanes, caps));
 }
 

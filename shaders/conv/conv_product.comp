@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "row_store.glsl"
 
 // A convolution, forward or transposed, as an implicit product of matrices held in registers:
 //   out[n, o, ya, xb] = bias[o] + Σ tap,i  in[n, i, ya' , xb'] · w[o, tap, i]
@@ -20,6 +21,7 @@ layout(constant_id = 2) const int kPixels = 1;
 layout(constant_id = 3) const uint kAccumulate = 0;  // 1: out += …
 layout(constant_id = 4) const int kIn4 = 0;          // p.in4, for straight code; 0: a loop
 layout(constant_id = 5) const uint kExact = 0;       // 1: what sums and products round off is kept and added at the end
+layout(constant_id = 6) const bool kRows = false;    // pixels of a row of lanes lie in one image, one after the other, and are stored so
 const int kBlocks = (kOut4 + 1) / 2;                 // of 8 output channels
 const int kHalves = kOut4 < 2 ? 1 : 2;               // vectors of a block
 
@@ -41,6 +43,7 @@ layout(push_constant) uniform Push {
   int base[2];
   int tiles;  // of output channels
   int bias;   // where it starts in `weights`
+  ROW_DIGITS
 } p;
 
 READ4(0, x)
@@ -172,7 +175,28 @@ void store_sums(int a, int b, int out_block) {
         if (image[r] < p.n) add4(y, at[r] + o * size, kExact != 0 ? sums[r][o] + lost[r][o] : sums[r][o], kAccumulate)
 }
 
+#ifdef TEXEL
+// The same for one phase, where an image's pixels are a multiple of a subgroup's lanes.
+void store_rows(int out_block) {
+  int size = p.out_h * p.out_w;
+  int first_image = known_uniform6(image[0]);
+  int first_pixel = known_uniform6(row[0] * p.out_w + column[0] - int(gl_LocalInvocationID.x));
+  int first_block = known_uniform4(out_block);
+  [[unroll]] for (int r = 0; r < kPixels; ++r) {
+    int pixel = first_pixel + r * int(gl_WorkGroupSize.x);
+    int images_on = int((float(pixel) + 0.5) / float(size));
+    int from = ((first_image + images_on) * p.out4 + first_block) * size + pixel - images_on * size;
+    [[unroll]] for (int o = 0; o < kOut4; ++o)
+      store4_row(y, first_block + o < p.out4 && first_image + images_on < p.n, from + o * size,
+                 kExact != 0 ? sums[r][o] + lost[r][o] : sums[r][o])
+  }
+}
+#endif
+
 void main() {
+#ifdef TEXEL
+  if (kRows) ALIGN_SPILLS(y)
+#endif
   int a = int(gl_WorkGroupID.z) / p.phases;
   int b = int(gl_WorkGroupID.z) - a * p.phases;
   int rows = (p.out_h - a + p.phases - 1) / p.phases;
@@ -180,7 +204,7 @@ void main() {
   int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   int tile = group / p.tiles;
   int out_block = (group - tile * p.tiles) * kOut4;
-  if (tile * int(gl_WorkGroupSize.x) * kPixels >= p.n * rows * columns) return;
+  if (!kRows && tile * int(gl_WorkGroupSize.x) * kPixels >= p.n * rows * columns) return;
   find_pixels(tile, rows, columns);
   [[unroll]] for (int o = 0; o < kOut4; ++o) {
     vec4 start = load4(weights, p.bias + out_block + o);
@@ -190,5 +214,11 @@ void main() {
     }
   }
   add_taps(a, b, out_block);
+#ifdef TEXEL
+  if (kRows) {
+    store_rows(out_block);
+    return;
+  }
+#endif
   store_sums(a, b, out_block);
 }

@@ -3,6 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
 #include "subgroup.glsl"
+#include "row_store.glsl"
 
 // The products of conv_product.comp with kernels up to 3 wide and no dilation, for CPU devices:
 //   out[n, o, y, x] = bias[o] + sum over ky, kx, i of in[n, i, y', x'] w[o, tap, i]
@@ -44,6 +45,7 @@ layout(push_constant) uniform Push {
   int tiles;   // of output channels
   int bias;    // where it starts in `weights`
   int blocks;  // stretches of a row
+  ROW_DIGITS
 } p;
 
 READ4(0, x)
@@ -73,27 +75,86 @@ const int kFetches = (kPairs + kShare - 1) / kShare;
 
 float sums[kOut4 * 4][kPositions];
 
+struct Stretch {
+  int image;  // p.n or more beyond the last one
+  int row;    // of the phase
+  int column;
+};
+
+// The stretch `on` further than one of an image's `first_row`; numbers are small enough for floats.
+Stretch stretch_at(int rows, int first_image, int first_row, int on) {
+  int rows_on = int((float(on) + 0.5) / float(p.blocks));
+  int down = first_row + rows_on;
+  int images_on = int((float(down) + 0.5) / float(rows));
+  return Stretch(first_image + images_on, down - images_on * rows, (on - rows_on * p.blocks) * kPixels);
+}
+
+int first_output(Stretch s, int a, int out_block, int size) {
+  return (s.image * p.out4 + out_block * kOut4) * size + (s.row * p.phases + a) * p.out_w + s.column * kPhases;
+}
+bool lies_inside(Stretch s, int r) { return s.image < p.n && (kWhole || s.column * kPhases + r < p.out_w); }
+
+vec4 sum_of(int o4, int r) {
+  vec4 sum;
+  [[unroll]] for (int o = 0; o < 4; ++o) sum[o] = 4 * o4 + o < kOut ? sums[4 * o4 + o][r] : 0.0;
+  return sum;
+}
+
+#ifdef TEXEL
+// Every lane's stretch is found once more for all lanes, from what is known to be uniform (row_store.glsl).
+void store_known(int a, int rows, int first_image, int first_row, int first_block, int out_block) {
+  int size = p.out_h * p.out_w;
+  a = known_uniform2(a);
+  rows = (p.out_h - a + p.phases - 1) / p.phases;
+  first_image = known_uniform6(first_image);
+  first_row = known_uniform4(first_row);
+  first_block = known_uniform4(first_block);
+  out_block = known_uniform4(out_block);
+  int at[kMostLanes];
+  Stretch s[kMostLanes];
+  [[unroll]] for (int l = 0; l < kMostLanes; ++l) {
+    s[l] = stretch_at(rows, first_image, first_row, first_block + l);
+    at[l] = first_output(s[l], a, out_block, size);
+  }
+  [[unroll]] for (int o4 = 0; o4 < kOut4; ++o4) {
+    bool there = out_block * kOut4 + o4 < p.out4;
+    [[unroll]] for (int r = 0; r < kPositions; r += 2) {
+      uvec4 words = ROW_WORDS(y, sum_of(o4, r));
+      uvec4 next = ROW_WORDS(y, sum_of(o4, r + 1));
+      [[unroll]] for (int l = 0; l < kMostLanes; ++l) {
+        int to = at[l] + o4 * size + r;
+        if (kWhole) {  // which makes p.out_w even
+          STORE_LANES(y, there && lies_inside(s[l], r), to, words, l, next, l)
+        } else {
+          STORE_LANE(y, there && lies_inside(s[l], r), to, words, l)
+          STORE_LANE(y, there && lies_inside(s[l], r + 1), to + 1, next, l)
+        }
+      }
+    }
+  }
+}
+#endif
+
 void main() {
+#ifdef TEXEL
+  const bool known = kRowStores && kAccumulate == 0;
+  if (known) ALIGN_SPILLS(y)
+#else
+  const bool known = false;
+#endif
   int a = int(gl_WorkGroupID.z);
   int rows = (p.out_h - a + p.phases - 1) / p.phases;
-  int columns = (p.out_w + kPhases - 1) / kPhases;
   int group = int(gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   int tile = group / p.tiles;
   int out_block = group - tile * p.tiles;  // of kOut channels
   // One exact division for the workgroup; from there on numbers are small enough for floats.
   int begin = tile * int(kSubgroupSize);
   int first_image = begin / (rows * p.blocks);
-  if (first_image >= p.n) return;
+  if (!known && first_image >= p.n) return;
   int within = begin - first_image * (rows * p.blocks);
   int first_row = within / p.blocks;
-  int block = within - first_row * p.blocks + int(gl_SubgroupInvocationID);
-  int rows_on = int((float(block) + 0.5) / float(p.blocks));
-  block -= rows_on * p.blocks;
-  int down = first_row + rows_on;
-  int images_on = int((float(down) + 0.5) / float(rows));
-  int row = down - images_on * rows;
-  int image = first_image + images_on;
-  int column = block * kPixels;
+  int first_block = within - first_row * p.blocks;
+  Stretch s = stretch_at(rows, first_image, first_row, first_block + int(gl_SubgroupInvocationID));
 
   [[unroll]] for (int o4 = 0; o4 < kOut4; ++o4) {
     vec4 start = load4(weights, p.bias + out_block * kOut4 + o4);
@@ -110,10 +171,10 @@ void main() {
                    int(gl_SubgroupInvocationID) % 8;
   }
 
-  int x0 = column * kStep + kLow;
-  int y0 = image < p.n ? row * p.stride + p.base[a] : kOutside;
+  int x0 = s.column * kStep + kLow;
+  int y0 = s.image < p.n ? s.row * p.stride + p.base[a] : kOutside;
   int plane = p.h * p.w;
-  int at0 = image * p.in4 * plane;
+  int at0 = s.image * p.in4 * plane;
   int tap_row = p.first[a] * p.kernel * p.in4 * 8;
   int c = 0;
   // One loop over rows and channels: every level of loops copies all sums.
@@ -151,14 +212,16 @@ void main() {
     tap_row += next ? p.tap_step * p.kernel * p.in4 * 8 : 0;
   }
 
+#ifdef TEXEL
+  if (known) {
+    store_known(a, rows, first_image, first_row, first_block, out_block);
+    return;
+  }
+#endif
   int size = p.out_h * p.out_w;
-  int out_row = (image * p.out4 + out_block * kOut4) * size + (row * p.phases + a) * p.out_w + column * kPhases;
+  int out_row = first_output(s, a, out_block, size);
   [[unroll]] for (int o4 = 0; o4 < kOut4; ++o4)
     if (out_block * kOut4 + o4 < p.out4)
       [[unroll]] for (int r = 0; r < kPositions; ++r)
-        if (image < p.n && (kWhole || column * kPhases + r < p.out_w)) {
-          vec4 sum;
-          [[unroll]] for (int o = 0; o < 4; ++o) sum[o] = 4 * o4 + o < kOut ? sums[4 * o4 + o][r] : 0.0;
-          add4(y, out_row + o4 * size + r, sum, kAccumulate)
-        }
+        if (lies_inside(s, r)) add4(y, out_row + o4 * size + r, sum_of(o4, r), kAccumulate)
 }

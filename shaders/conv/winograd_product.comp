@@ -56,8 +56,8 @@ void main() {
     }
   }
 
-  int row_plane = known_uniform4(int(gl_WorkGroupID.z)) * p.frequencies + known_uniform2(frequency);
-  int row_block = known_uniform3(int(gl_WorkGroupID.x)) * kOut4;
+  int row_plane = known_uniform6(int(gl_WorkGroupID.z)) * p.frequencies + known_uniform2(frequency);
+  int row_block = known_uniform4(int(gl_WorkGroupID.x)) * kOut4;
   int to = (row_plane * p.out4 + row_block) * width;
   [[unroll]] for (int o = 0; o < kOut4; ++o)
     [[unroll]] for (int r = 0; r < kTiles; ++r)

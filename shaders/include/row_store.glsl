@@ -2,7 +2,7 @@
 //
 //   layout(push_constant) uniform Push { ...; ROW_DIGITS } p;   at most 96 bytes before it
 //   ALIGN_SPILLS(y)                                             first of all in main()
-//   int base = known_uniform3(x)                                x < 8^3, the same in all lanes; likewise known_uniform1 to 8
+//   int base = known_uniform4(x)                                x < 8^4, the same in all lanes; likewise known_uniform2 and 6
 //   store4_row(y, inside, base, v)                              if (inside) y[base + lane] = v; outside of all control flow, `inside`
 //                                                               being made of what is known to be uniform
 //
@@ -23,10 +23,12 @@ const int kNowhere = 0x07ffff00;
   if (kRowStores) name[kNowhere + int(gl_LocalInvocationID.x)] = u64vec2(0);
 #define ROW_DIGITS layout(offset = 96) int octal[8];
 #define octal_digit(x, d) (p.octal[((x) >> (3 * (d))) & 7] << (3 * (d)))
-#define known_uniform1(x) (kRowStores ? octal_digit(x, 0) : (x))
-#define known_uniform2(x) (kRowStores ? octal_digit(x, 0) | octal_digit(x, 1) : (x))
-#define known_uniform3(x) (kRowStores ? octal_digit(x, 0) | octal_digit(x, 1) | octal_digit(x, 2) : (x))
-#define known_uniform4(x) (kRowStores ? octal_digit(x, 0) | octal_digit(x, 1) | octal_digit(x, 2) | octal_digit(x, 3) : (x))
+#define octal_digits2(x) (octal_digit(x, 0) | octal_digit(x, 1))
+#define octal_digits4(x) (octal_digits2(x) | octal_digit(x, 2) | octal_digit(x, 3))
+#define known_uniform2(x) (kRowStores ? octal_digits2(x) : (x))
+#define known_uniform4(x) (kRowStores ? octal_digits4(x) : (x))
+#define known_uniform6(x) (kRowStores ? octal_digits4(x) | octal_digit(x, 4) | octal_digit(x, 5) : (x))
+
 // Lanes of the widest subgroup that rows are stored of.
 const int kMostLanes = 16;
 
@@ -67,10 +69,9 @@ const int kMostLanes = 16;
 #else
 #define ALIGN_SPILLS(name)
 #define ROW_DIGITS
-#define known_uniform1(x) (x)
 #define known_uniform2(x) (x)
-#define known_uniform3(x) (x)
 #define known_uniform4(x) (x)
+#define known_uniform6(x) (x)
 #define store4_row(name, inside, base, v) \
   if (inside) store4(name, (base) + int(gl_LocalInvocationID.x), v)
 #endif

@@ -43,6 +43,6 @@ int frequency_step() { return p.channels4 * p.width; }
 int first_frequency(int block, int vector, int within) { return block * kFrequencies * frequency_step() + vector * p.width + within; }
 
 // The same block, vector and tile, known to be uniform (row_store.glsl).
-int known_block() { return known_uniform4(int(gl_WorkGroupID.z)); }
+int known_block() { return known_uniform6(int(gl_WorkGroupID.z)); }
 int known_vector() { return known_uniform4(int(gl_WorkGroupID.x)); }
-int known_first_of_group() { return known_uniform3(int(gl_WorkGroupID.y)) * int(gl_WorkGroupSize.x); }
+int known_first_of_group() { return known_uniform4(int(gl_WorkGroupID.y)) * int(gl_WorkGroupSize.x); }

@@ -20,6 +20,9 @@ constexpr size_t kChunkDispatches = 512;
 /// The last push constants: what shaders/include/row_store.glsl looks digits up in.
 constexpr std::array<uint32_t, 8> kRowDigits{0, 1, 2, 3, 4, 5, 6, 7};
 constexpr uint32_t kRowDigitsAt = 96;
+/// Of shaders/include/unit_rows.glsl.
+constexpr uint32_t kUnitRowsId = 4;
+constexpr uint64_t kRowsOfGroup = 8;
 
 void memory_barrier(VkCommandBuffer buffer, VkPipelineStageFlags from, VkAccessFlags written,
                     VkPipelineStageFlags to, VkAccessFlags used) {
@@ -249,6 +252,22 @@ void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initi
   const uint64_t rows = columns == 0 ? 0 : (groups + columns - 1) / columns;
   dispatch(shader, all, std::span(bindings.begin(), bindings.size()), push,
            {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), 1});
+}
+
+void Recorder::dispatch_units(std::string_view shader, uint64_t units, bool wide,
+                              std::initializer_list<Slice> bindings, const Push& push,
+                              const std::vector<uint32_t>& constants, uint64_t run) {
+  const uint64_t group = uint64_t{caps().subgroup_size} * kRowsOfGroup;
+  if (!caps().row_stores || !wide || units % 2 != 0 || run % group != 0 || units < group)
+    return dispatch_flat(shader, (units + 3) / 4, bindings, push, constants);
+  std::vector<uint32_t> all{caps().subgroup_size};
+  all.insert(all.end(), constants.begin(), constants.end());
+  all.resize(kUnitRowsId);
+  all.push_back(1);
+  const uint64_t groups = (units + group - 1) / group;
+  const uint64_t columns = std::min<uint64_t>(groups, caps().max_groups[0]);
+  dispatch(shader, all, std::span(bindings.begin(), bindings.size()), push,
+           {static_cast<uint32_t>(columns), static_cast<uint32_t>((groups + columns - 1) / columns), 1});
 }
 
 void Recorder::fill(const Slice& slice, uint32_t word) {

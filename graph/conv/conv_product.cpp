@@ -255,8 +255,9 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
                                              : choose_uniform_tile(work);
   push.bias = static_cast<int32_t>(packing.weight_vectors());
   push.tiles = static_cast<int32_t>((push.out4 + tile.out4 - 1) / tile.out4);
-  const bool rows = family == kShuffle && caps.row_stores && operands.accumulate == 0 && push.phases == 1 &&
-                    push.out_h * push.out_w % caps.subgroup_size == 0;
+  const bool rows = family == kShuffle && operands.accumulate == 0 && push.phases == 1 &&
+                    push.out_h * push.out_w % caps.subgroup_size == 0 &&
+                    row_stores_pay(push.taps[0] * push.taps[0] * push.in4, tile.out4 * tile.pixels, caps);
   recorder.dispatch(
       "conv_product." + std::string(family),
       {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels),

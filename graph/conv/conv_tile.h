@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 
+#include "runtime/caps.h"
+
 namespace vkopple {
 
 /// What one invocation of conv_product makes.
@@ -29,5 +31,10 @@ struct ConvWork {
 ConvTile choose_shuffle_tile(const ConvWork& work, int64_t threads);
 /// For kernels that load weights from the same address in all invocations.
 ConvTile choose_uniform_tile(const ConvWork& work);
+
+/// Whether a direct kernel should store rows (shaders/include/row_store.glsl): their code is long, a dozen
+/// instructions for each of a subgroup's vectors, which the driver compiles and a processor fetches. It pays
+/// where a sum is short. `iterations`: of the kernel's loop; `vectors`: of 4 channels that an invocation makes.
+bool row_stores_pay(int64_t iterations, int64_t vectors, const Caps& caps);
 
 }  // namespace vkopple

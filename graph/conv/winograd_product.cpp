@@ -137,7 +137,8 @@ void record_winograd_product(Recorder& recorder, const ConvShape& shape, ConvDir
         ProductPush{i32(in4), i32(out4), i32(packed_channels(plan.out) / 8), i32(chunks.frequencies())},
         {u32(ceil_div(out4, plan.product.out4)), u32(chunks.frequencies()), u32(blocks)});
     record_winograd_transform(recorder, "winograd_output", chunks, first, blocks,
-                              {plan.out, plan.out_h, plan.out_w}, {products, operands.bias, operands.out},
+                              {plan.out, plan.out_h, plan.out_w},
+                              {products, operands.bias, operands.out, operands.out},
                               static_cast<bool>(operands.bias), {operands.accumulate, whole ? 1U : 0U});
   }
 }

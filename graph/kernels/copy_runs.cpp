@@ -32,7 +32,8 @@ void copy_runs(Recorder& recorder, const Slice& from, const Slice& to, const Run
                           .to_stride = u32(r.to_stride / unit),
                           .to_begin = u32(r.to_begin / unit),
                           .accumulate = accumulate};
-  recorder.dispatch_flat(wide ? "copy_runs.vec4s" : "copy_runs.words", (push.units + 3) / 4, {from, to}, push);
+  recorder.dispatch_units(wide ? "copy_runs.vec4s" : "copy_runs.words", push.units, wide, {from, to, to}, push,
+                          {}, push.run);
 }
 
 }  // namespace vkopple

@@ -55,7 +55,8 @@ class Normalise {
   WalkPush walk_push() const;
   ApplyPush apply_push(uint32_t accumulate) const;
   Groups strip_groups() const;
-  Groups apply_groups(const ApplyPush& push, uint32_t local) const;
+  void dispatch_apply(Recorder& recorder, const char* shader, std::initializer_list<Slice> bindings,
+                      uint32_t accumulate) const;
 
   NormStrips strips_;
   NormSurround surround_;

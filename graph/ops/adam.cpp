@@ -73,10 +73,14 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
                       .rest2 = correction.rest2,
                       .epsilon = f32(options_.epsilon),
                       .clip = f32(options_.clip)};
-  recorder.dispatch_flat("adam.apply", (push.vectors + 3) / 4,
-                         {io.x[kGradient].slice, io.x[kCorrection].slice, io.x[kParameters].slice,
-                          io.x[kM].slice, io.x[kV].slice, scale},
-                         push, {scaled});
+  const Slice parameters = io.x[kParameters].slice;
+  const Slice m = io.x[kM].slice;
+  const Slice v = io.x[kV].slice;
+  // Where a factor may say that nothing is to change, nothing is stored by rows.
+  recorder.dispatch_units(
+      "adam.apply", push.vectors, scaled == 0,
+      {io.x[kGradient].slice, io.x[kCorrection].slice, parameters, m, v, scale, parameters, m, v}, push,
+      {scaled});
 }
 
 void Adam::record_backward(Recorder&, const Backward&) const {}

@@ -26,8 +26,8 @@ void combine(Recorder& recorder, BinaryKind kind, const Operand& a, const Operan
              uint32_t accumulate) {
   const bool wide = words(to) % 4 == 0;
   const SamePush push{words(to) / (wide ? 4 : 1), accumulate};
-  recorder.dispatch_flat(wide ? "binary.same4" : "binary.same", (push.units + 3) / 4,
-                         {a.slice, b.slice, to.slice}, push, {static_cast<uint32_t>(kind)});
+  recorder.dispatch_units(wide ? "binary.same4" : "binary.same", push.units, wide,
+                          {a.slice, b.slice, to.slice, to.slice}, push, {static_cast<uint32_t>(kind)});
 }
 
 /// The gradient of `part`: dy, times the other factor where there is one, summed over the axes that repeat it.

@@ -26,15 +26,16 @@ Needs LeakyRelu::needs(std::span<const TensorSpec>, const Caps&) const {
 void LeakyRelu::record_forward(Recorder& recorder, const Forward& io) const {
   const bool wide = words(io.y[0]) % 4 == 0;
   const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, 0};
-  recorder.dispatch_flat(wide ? "leaky_relu.forward4" : "leaky_relu.forward", (push.units + 3) / 4,
-                         {io.x[0].slice, io.y[0].slice}, push);
+  recorder.dispatch_units(wide ? "leaky_relu.forward4" : "leaky_relu.forward", push.units, wide,
+                          {io.x[0].slice, io.y[0].slice}, push);
 }
 
 void LeakyRelu::record_backward(Recorder& recorder, const Backward& io) const {
   const bool wide = words(io.y[0]) % 4 == 0;
   const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, io.accumulates(0)};
-  recorder.dispatch_flat(wide ? "leaky_relu.backward4" : "leaky_relu.backward", (push.units + 3) / 4,
-                         {io.y[0].slice, io.dy[0].slice, io.dx[0].slice}, push);
+  const Slice dx = io.dx[0].slice;
+  recorder.dispatch_units(wide ? "leaky_relu.backward4" : "leaky_relu.backward", push.units, wide,
+                          {io.y[0].slice, io.dy[0].slice, dx, dx}, push);
 }
 
 Value leaky_relu(Value x, float slope) { return x.graph().apply1(std::make_shared<LeakyRelu>(slope), {x}); }

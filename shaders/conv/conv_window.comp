@@ -25,6 +25,7 @@ layout(constant_id = 6) const int kPadding = 1;
 layout(constant_id = 7) const bool kTransposed = false;
 layout(constant_id = 8) const int kIn = 4;      // channels of a vector that count: 4, or fewer where there are fewer in all
 layout(constant_id = 9) const bool kWhole = false;  // columns of a phase are a multiple of kPixels, inputs too
+layout(constant_id = 10) const bool kKnown = false;  // stores lane by lane to addresses that are known to be uniform (row_store.glsl)
 
 layout(push_constant) uniform Push {
   int n;
@@ -137,10 +138,7 @@ void store_known(int a, int rows, int first_image, int first_row, int first_bloc
 
 void main() {
 #ifdef TEXEL
-  const bool known = kRowStores && kAccumulate == 0;
-  if (known) ALIGN_SPILLS(y)
-#else
-  const bool known = false;
+  if (kKnown) ALIGN_SPILLS(y)
 #endif
   int a = int(gl_WorkGroupID.z);
   int rows = (p.out_h - a + p.phases - 1) / p.phases;
@@ -150,7 +148,7 @@ void main() {
   // One exact division for the workgroup; from there on numbers are small enough for floats.
   int begin = tile * int(kSubgroupSize);
   int first_image = begin / (rows * p.blocks);
-  if (!known && first_image >= p.n) return;
+  if (!kKnown && first_image >= p.n) return;
   int within = begin - first_image * (rows * p.blocks);
   int first_row = within / p.blocks;
   int first_block = within - first_row * p.blocks;
@@ -213,7 +211,7 @@ void main() {
   }
 
 #ifdef TEXEL
-  if (known) {
+  if (kKnown) {
     store_known(a, rows, first_image, first_row, first_block, out_block);
     return;
   }

@@ -14,6 +14,7 @@ layout(constant_id = 2) const bool kWhole = false;  // no tile reaches beyond it
 READ4(0, transformed)
 READ1(1, bias)
 WRITE4(2, y)
+READ4(3, old)  // y, where rows are stored
 
 float bias_of(int channel) { return load1_or_zero(bias, p.has_bias != 0 && channel < p.channels, channel); }
 
@@ -32,11 +33,17 @@ vec4[kMade] output_column(vec4 rows[kRead][kMade], int j) {
 
 #ifdef TEXEL
 // Every lane's tile is found once more for all lanes, from what is known to be uniform (row_store.glsl).
-void store_known(vec4 rows[kRead][kMade], vec4 start) {
+void store_known(vec4 rows[kRead][kMade], vec4 start, Tile mine) {
+  int mine_at = first_output(mine, int(gl_WorkGroupID.x));
   uvec4 words[kMade][kMade];
   [[unroll]] for (int j = 0; j < kMade; ++j) {
     vec4 column[kMade] = output_column(rows, j);
-    [[unroll]] for (int i = 0; i < kMade; ++i) words[i][j] = ROW_WORDS(y, column[i] + start);
+    [[unroll]] for (int i = 0; i < kMade; ++i) {
+      vec4 v = column[i] + start;
+      if (kAccumulate != 0)
+        v += load4_or_zero(old, mine.image < p.images && lies_inside(mine, i, j), mine_at + i * p.w + j);
+      words[i][j] = ROW_WORDS(y, v);
+    }
   }
   int vector = known_vector();
   int block = known_block();
@@ -72,8 +79,8 @@ void main() {
   int c = 4 * int(gl_WorkGroupID.x);
   vec4 start = vec4(bias_of(c), bias_of(c + 1), bias_of(c + 2), bias_of(c + 3));
 #ifdef TEXEL
-  if (kRowStores && kAccumulate == 0) {
-    store_known(rows, start);
+  if (kRowStores) {
+    store_known(rows, start, tile);
     return;
   }
 #endif

@@ -2,7 +2,7 @@
 //
 //   layout(push_constant) uniform Push { ...; ROW_DIGITS } p;   at most 96 bytes before it
 //   ALIGN_SPILLS(y)                                             first of all in main()
-//   int base = known_uniform4(x)                                x < 8^4, the same in all lanes; likewise known_uniform2 and 6
+//   int base = known_uniform4(x)                                x < 8^4, the same in all lanes; likewise known_uniform2, 6 and 8
 //   store4_row(y, inside, base, v)                              if (inside) y[base + lane] = v; outside of all control flow, `inside`
 //                                                               being made of what is known to be uniform
 //
@@ -28,6 +28,7 @@ const int kNowhere = 0x07ffff00;
 #define known_uniform2(x) (kRowStores ? octal_digits2(x) : (x))
 #define known_uniform4(x) (kRowStores ? octal_digits4(x) : (x))
 #define known_uniform6(x) (kRowStores ? octal_digits4(x) | octal_digit(x, 4) | octal_digit(x, 5) : (x))
+#define known_uniform8(x) (kRowStores ? octal_digits4(x) | octal_digits4((x) >> 12) << 12 : (x))
 
 // Lanes of the widest subgroup that rows are stored of.
 const int kMostLanes = 16;
@@ -57,6 +58,13 @@ const int kMostLanes = 16;
                                   LANE_HIGH(words_b, lane_b));                                                     \
     }                                                                                                              \
   }
+// y[base + lane] = v as far as that is below `limit`, which is even; kRowStores must hold.
+#define store4_row_below(name, limit, base, v)                                                            \
+  {                                                                                                       \
+    uvec4 words_ = ROW_WORDS(name, v);                                                                    \
+    [[unroll]] for (int lane_ = 0; lane_ < kMostLanes; lane_ += 2)                                        \
+      STORE_LANES(name, (base) + lane_ < (limit), (base) + lane_, words_, lane_, words_, lane_ + 1)       \
+  }
 #define store4_row(name, inside, base, v)                                                                 \
   if (kRowStores) {                                                                                       \
     uvec4 words_ = ROW_WORDS(name, v);                                                                    \
@@ -72,6 +80,7 @@ const int kMostLanes = 16;
 #define known_uniform2(x) (x)
 #define known_uniform4(x) (x)
 #define known_uniform6(x) (x)
+#define known_uniform8(x) (x)
 #define store4_row(name, inside, base, v) \
   if (inside) store4(name, (base) + int(gl_LocalInvocationID.x), v)
 #endif

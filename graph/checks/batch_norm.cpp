@@ -89,6 +89,7 @@ void check_batch_norm(CheckList& list) {
   list.push_back(batch_norm_case({1, 9, 16, 16}, {.eps = 1e-6F, .slope = 0.1F, .dropout = 0.05F}));
   list.push_back(batch_norm_case({3, 2, 37, 31}, {.groups = 3, .slope = 0.1F}));
   list.push_back(batch_norm_case({4, 3, 33, 32}, {.groups = 2, .slope = 0.1F, .dropout = 0.1F}));
+  list.push_back(batch_norm_case({3, 5, 6, 7}, {.slope = 0.1F, .dropout = 0.2F}));
   // A mean far from zero: a variance taken as E[x²] − E[x]² loses all its digits here.
   list.push_back(batch_norm_case({2, 3, 17, 19}, {.groups = 1}, 300));
   list.push_back(

@@ -43,6 +43,7 @@ void check_binary(CheckList& list) {
       {row_major({3, 5, 7}), row_major({3, 5, 7})},
       {row_major({4, 65}), row_major({4, 65})},
       {channels4({2, 3, 5, 7}), channels4({2, 3, 5, 7})},
+      {channels4({2, 7, 18, 19}), channels4({2, 7, 18, 19})},
       {row_major({2, 1, 3, 5}), row_major({2, 4, 1, 1})},
       {row_major({7}), row_major({3, 5, 7})},
       {row_major({2, 3, 2, 1, 3}), row_major({3, 1, 4, 1})},

@@ -49,6 +49,7 @@ void check_layer_norm(CheckList& list) {
   list.push_back(layer_norm_case({2, 13, 2, 2}, {.eps = 1e-4F, .slope = 0.1F, .dropout = 0.2F, .stream = 4}));
   list.push_back(layer_norm_case({5, 3, 5, 7}, {.slope = 0.1F, .dropout = 0.05F}));
   list.push_back(layer_norm_case({1, 8, 16, 17}, {.slope = 0.1F}));
+  list.push_back(layer_norm_case({2, 6, 6, 7}, {.slope = 0.1F, .dropout = 0.2F}));
   list.push_back(layer_norm_case({2, 2, 67, 31}, {.eps = 1e-5F}, 200));
 }
 

@@ -17,7 +17,7 @@ void check_leaky_relu(CheckList& list) {
     for (double& v : x[0].values) v += std::copysign(0.01, v);
   };
   for (const TensorSpec& spec : {row_major({1}), row_major({3, 5, 7}), row_major({1031}),
-                                 channels4({2, 3, 5, 7}), channels4({1, 16, 9, 8})})
+                                 channels4({2, 3, 5, 7}), channels4({1, 16, 9, 8}), channels4({2, 7, 18, 19})})
     list.push_back({.label = spec.shape.text(),
                     .op = std::make_shared<LeakyRelu>(0.1F),
                     .inputs = {spec},

@@ -43,5 +43,31 @@ TEST(AdamTest, AConstantGradientMovesParametersAtAConstantRate) {
   EXPECT_NEAR(correction[1], 1 - std::pow(0.999, kSteps), 1e-6);
 }
 
+/// More parameters than a workgroup takes, so that rows are stored where the device does that, and a last row
+/// that is not whole; each element as in the test above.
+TEST(AdamTest, ManyParametersAreMovedAlike) {
+  constexpr int64_t kCount = 1036;
+  Graph graph;
+  const Value x = graph.input("x", row_major({1, kCount}));
+  const Value w = graph.parameter("net", "w", {1, kCount});
+  const Value loss = graph.reshape(linear(x, w, {}), row_major({1}));
+  adam(graph, "net", {.learning_rate = 0.01, .epsilon = 0.1, .clip = 2});
+  Executor executor(test_device(), graph, {.groups = {}, .loss = loss, .trained = {"net"}});
+  std::vector<float> gradient(kCount);
+  for (size_t i = 0; i < gradient.size(); ++i) gradient[i] = 0.003F * static_cast<float>(i) - 1.5F;
+  executor.write(x, gradient);
+  executor.write(w, std::vector<float>(kCount, 1.0F));
+  for (int step = 0; step < 3; ++step) {
+    executor.forward();
+    executor.backward();
+    executor.update();
+  }
+  const auto moved = executor.read(w);
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    const double g = static_cast<double>(gradient[i]);
+    EXPECT_NEAR(moved[i], 1 - 3 * 0.01 * g / (std::abs(g) + 0.1), 1e-6) << i;
+  }
+}
+
 }  // namespace
 }  // namespace vkopple

@@ -43,6 +43,14 @@ TEST_P(OpCheckTest, MatchesItsReferenceInMixedPrecisionOnTheOtherAccessPath) {
   run_all(*other_access_device(), GetParam(), Storage::kFloat16);
 }
 
+TEST(RowStoresTest, KernelsMatchTheirReferencesWithoutThem) {
+  if (plain_stores_device() == nullptr) GTEST_SKIP() << "the device stores no rows: all tests ran without";
+  for (const OpChecks& checks : all_checks())
+    for (const std::string_view op :
+         {"conv2d", "conv_transpose2d", "batch_norm", "layer_norm", "leaky_relu", "binary", "slice", "concat"})
+      if (checks.op == op) run_all(*plain_stores_device(), checks);
+}
+
 TEST(ExactSumsTest, ConvolutionsMatchTheirReferences) {
   for (const OpChecks& checks : all_checks())
     if (checks.op.starts_with("conv")) run_all(exact_device(), checks);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 
 namespace vkopple {
 namespace {
@@ -15,6 +16,9 @@ void fail_test(const std::string& message) { ADD_FAILURE() << "validation: " << 
 }  // namespace
 
 const Device& test_device() {
+  // As the program does.
+  static const bool wide = (prefer_wide_vectors(), true);
+  (void)wide;
   static const Device device({.selector = "", .on_message = fail_test, .access = {}, .cache_folder = {}});
   return device;
 }
@@ -35,6 +39,15 @@ const Device* family_device(KernelFamily family, bool exact_sums) {
                                                     .winograd = false,
                                                     .kernels = family,
                                                     .cache_folder = {}});
+  return device.get();
+}
+
+const Device* plain_stores_device() {
+  static const auto device = []() -> std::unique_ptr<Device> {
+    if (!test_device().caps().row_stores) return nullptr;
+    return std::make_unique<Device>(
+        DeviceOptions{.selector = "", .on_message = fail_test, .row_stores = false, .cache_folder = {}});
+  }();
   return device.get();
 }
 

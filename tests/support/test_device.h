@@ -15,6 +15,9 @@ const Device& exact_device();
 /// The same device made to run one family of direct kernels, without Winograd's algorithm, with plain or exact
 /// sums; null where it can't.
 const Device* family_device(KernelFamily family, bool exact_sums = false);
+/// The same device made to store lane by lane where it would store rows (Caps::row_stores); null where it does
+/// anyway.
+const Device* plain_stores_device();
 /// The same device with the other access path; null where it can't have it.
 const Device* other_access_device();
 

@@ -120,10 +120,11 @@ void record_winograd_product(Recorder& recorder, const ConvShape& shape, ConvDir
   const Slice inputs = scratch.sub(inputs_at, chunks.bytes(in4));
   const Slice products = scratch.sub(inputs_at + aligned(inputs.bytes), chunks.bytes(out4));
 
-  recorder.dispatch_flat(chunks.made == 4 ? "winograd_weights.f4" : "winograd_weights.f2",
-                         static_cast<uint64_t>(plan.weight_vectors()), {operands.w, weights},
-                         WeightPush{i32(plan.out), i32(plan.in), i32(plan.weight_vectors())},
-                         {direction == ConvDirection::kTransposed ? 1U : 0U});
+  const int64_t local = recorder.caps().row_stores ? plan.lanes : recorder.caps().flat_workgroup();
+  recorder.dispatch(chunks.made == 4 ? "winograd_weights.f4" : "winograd_weights.f2",
+                    {u32(local), direction == ConvDirection::kTransposed ? 1U : 0U}, {operands.w, weights},
+                    WeightPush{i32(plan.out), i32(plan.in), i32(plan.weight_vectors())},
+                    {u32(ceil_div(plan.weight_vectors(), local)), 1, 1});
   const bool whole = plan.out_h % chunks.made == 0 && plan.out_w % chunks.made == 0;
   for (int64_t first = 0; first < chunks.blocks(); first += chunks.chunk_blocks) {
     const int64_t blocks = std::min(chunks.chunk_blocks, chunks.blocks() - first);

@@ -31,11 +31,15 @@ struct Plan {
   }
 };
 
+/// Vectors of output channels that the lanes of a subgroup fetch at once.
+int64_t shared_vectors(int64_t lanes) { return lanes >= 16 ? 2 : 1; }
+
 /// Nanoseconds of a subgroup for a round of the loop, from the same costs as those of winograd_product.
 double round_cost(int64_t lane_in4, int64_t lane_out4, int64_t lanes) {
   const auto sums = static_cast<double>(16 * lane_in4 * lane_out4);
   const double fetch = 6.0 / 8 * static_cast<double>(lanes);
-  return fetch * static_cast<double>(kRound * lane_in4 + lane_out4) + (0.19 * kRound + 0.25) * sums;
+  return fetch * static_cast<double>(kRound * lane_in4 + lane_out4 / shared_vectors(lanes)) +
+         (0.19 * kRound + 0.25) * sums;
 }
 
 Plan make_plan(const ConvShape& s, WinogradTile tile, const Caps& caps) {
@@ -91,6 +95,7 @@ void record_winograd_weight_gradient(Recorder& recorder, const ConvShape& s, con
   const Slice inputs = scratch.sub(aligned(product.bytes), chunks.bytes(plan.in4));
   const Slice gradients = scratch.sub(aligned(product.bytes) + aligned(inputs.bytes), chunks.bytes(plan.out4));
 
+  const bool rows = recorder.caps().row_stores && plan.in4 % plan.lanes == 0;
   for (int64_t first = 0; first < chunks.blocks(); first += chunks.chunk_blocks) {
     const int64_t blocks = std::min(chunks.chunk_blocks, chunks.blocks() - first);
     record_winograd_transform(recorder, "winograd_input", chunks, first, blocks, {s.ci, s.h, s.w, -s.padding},
@@ -99,8 +104,9 @@ void record_winograd_weight_gradient(Recorder& recorder, const ConvShape& s, con
                               {dy, gradients});
     recorder.dispatch(
         "winograd_weight_product",
-        {u32(plan.lanes), u32(plan.lane_out4), u32(plan.lane_in4), first > 0 ? 1U : 0U},
-        {inputs, gradients, product},
+        {u32(plan.lanes), u32(plan.lane_out4), u32(plan.lane_in4), first > 0 ? 1U : 0U,
+         u32(shared_vectors(plan.lanes)), rows ? 1U : 0U},
+        {inputs, gradients, product, product},
         ProductPush{i32(plan.in4), i32(plan.out4), i32(blocks), i32(chunks.width), i32(chunks.frequencies())},
         {u32(ceil_div(plan.out4, plan.lane_out4)), u32(ceil_div(plan.in4, plan.lanes * plan.lane_in4)),
          u32(chunks.frequencies())});

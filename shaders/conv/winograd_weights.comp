@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "row_store.glsl"
 #include "winograd.glsl"
 
 // U = G w G^T as winograd_product reads it: [frequency][out / 8][in / 4][out % 8], a vec4 of 4 input channels, `out` and `in` being the
@@ -13,7 +14,8 @@ layout(constant_id = 1) const bool kTransposed = false;
 layout(push_constant) uniform Push {
   int out_channels;
   int in_channels;
-  int vectors;  // of a frequency
+  int vectors;  // of a frequency; a multiple of 8
+  ROW_DIGITS
 } p;
 
 READ1(0, w)
@@ -27,7 +29,11 @@ float weight(int o, int i, int tap) {
 
 void main() {
   int at = int(flat_index());
-  if (at >= p.vectors) return;
+#ifdef TEXEL
+  ALIGN_SPILLS(transformed)
+  int row = known_uniform6(int(gl_WorkGroupID.x)) * int(gl_WorkGroupSize.x);
+#endif
+  if (!kRowStores && at >= p.vectors) return;
   int in4 = (p.in_channels + 3) / 4;
   int block = at / 8;
   int o = block / in4 * 8 + at % 8;
@@ -45,6 +51,14 @@ void main() {
     vec4 line[3];
     [[unroll]] for (int ky = 0; ky < 3; ++ky) line[ky] = rows[ky][x];
     vec4 column[kRead] = weight_transform(line);
-    [[unroll]] for (int y = 0; y < kRead; ++y) store4(transformed, at + (y * kRead + x) * p.vectors, column[y])
+    [[unroll]] for (int y = 0; y < kRead; ++y) {
+      int from = (y * kRead + x) * p.vectors;
+#ifdef TEXEL
+      if (kRowStores)
+        store4_row_below(transformed, from + p.vectors, from + row, column[y])
+      else
+#endif
+        store4(transformed, at + from, column[y])
+    }
   }
 }

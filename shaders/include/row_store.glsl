@@ -75,6 +75,7 @@ const int kMostLanes = 16;
     store4(name, (base) + int(gl_LocalInvocationID.x), v)                                                 \
   }
 #else
+const bool kRowStores = false;
 #define ALIGN_SPILLS(name)
 #define ROW_DIGITS
 #define known_uniform2(x) (x)

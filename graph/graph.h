@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -21,6 +22,7 @@ class Value {
   Value(Graph& graph, int id) : graph_(&graph), id_(id) {}
   Graph& graph() const { return *graph_; }
   int id() const { return id_; }
+  /// Valid as long as the graph, whatever is added to it.
   const TensorSpec& spec() const;
   const Shape& shape() const { return spec().shape; }
   explicit operator bool() const { return graph_ != nullptr; }
@@ -102,6 +104,7 @@ class Graph {
   /// Keeps a value for the host under a name.
   void keep(const std::string& name, Value value);
 
+  /// Valid as long as the graph.
   const ValueInfo& info(int id) const { return values_.at(static_cast<size_t>(id)); }
   size_t value_count() const { return values_.size(); }
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -126,7 +129,7 @@ class Graph {
                    const std::string& name, const TensorSpec& spec);
   Value view(Value value, const TensorSpec& spec, uint64_t offset);
 
-  std::vector<ValueInfo> values_;
+  std::deque<ValueInfo> values_;  ///< references to it stay valid while values are added
   std::vector<Node> nodes_;
   std::vector<Node> updates_;
   std::map<std::string, int> inputs_;

@@ -26,6 +26,14 @@ enum class KernelFamily {
   kPlain,      ///< what runs anywhere
 };
 
+/// Where convolutions use Winograd's algorithm, whose rounding grows with its tiles.
+enum class WinogradUse {
+  kNever,
+  kWhereFaster,  ///< by an estimate, on CPU devices
+  kTiles2,       ///< with tiles of 2 x 2 outputs wherever it can run
+  kTiles4,       ///< … of 4 x 4
+};
+
 /// Choices that were measured on a device, by what they are for; what the numbers mean, and whether the device
 /// can do that, the kernels' host side knows (graph/conv/conv_tuning.h).
 using TunedChoices = std::map<std::string, std::vector<uint32_t>>;
@@ -61,9 +69,9 @@ struct Caps {
   AccessPath access = AccessPath::kStorage;
   bool row_stores = false;  ///< kernels of subgroups store lane by lane at uniform addresses (row_store.glsl)
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
-  KernelFamily kernels = KernelFamily::kAuto;  ///< a choice, for convolutions
-  bool winograd = true;  ///< a choice: convolutions may use Winograd's algorithm where it is faster
-  std::shared_ptr<const TunedChoices> tuned;  ///< null: none
+  KernelFamily kernels = KernelFamily::kAuto;        ///< a choice, for convolutions and matrix products
+  WinogradUse winograd = WinogradUse::kWhereFaster;  ///< a choice, of convolutions without exact_sums
+  std::shared_ptr<const TunedChoices> tuned;         ///< null: none
 
   bool cpu() const { return type == DeviceType::kCpu; }
   /// Invocations of a workgroup for kernels that treat every element alike.
@@ -77,6 +85,8 @@ struct Caps {
 
 /// Why the device can't run a family of kernels, in a line; empty: it can.
 std::string missing_for(KernelFamily family, const Caps& caps);
+/// Likewise for convolutions that are made to use Winograd's algorithm.
+std::string missing_for(WinogradUse use, const Caps& caps);
 
 /// "8c2f…" as 32 hexadecimal digits in the usual 8-4-4-4-12 grouping.
 std::string uuid_text(const std::array<uint8_t, 16>& uuid);

@@ -30,6 +30,16 @@ std::string missing_for(KernelFamily family, const Caps& caps) {
          ": they need a CPU device with shuffles among 8 to 128 lanes; leave the choice to the device";
 }
 
+std::string missing_for(WinogradUse use, const Caps& caps) {
+  if (use == WinogradUse::kNever || use == WinogradUse::kWhereFaster) return {};
+  if (caps.exact_sums)
+    return "Winograd's algorithm can't keep what sums round off; take plain sums, or leave the choice to the "
+           "device";
+  if (caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128) return {};
+  return "Winograd's algorithm can't run on " + caps.name +
+         ": it needs shuffles among 8 to 128 lanes; leave the choice to the device";
+}
+
 std::filesystem::path default_cache_folder() {
   if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
     return std::filesystem::path(cache) / "vkopple";
@@ -53,6 +63,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
   caps_.kernels = options.kernels;
   if (const std::string why = missing_for(caps_.kernels, caps_); !why.empty()) throw Error(why);
   caps_.winograd = options.winograd;
+  if (const std::string why = missing_for(caps_.winograd, caps_); !why.empty()) throw Error(why);
   if (options.tuned) caps_.tuned = options.tuned(caps_);
   create_logical_device();
   const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;

@@ -16,12 +16,13 @@ namespace vkopple {
 class PipelineSet;
 
 struct DeviceOptions {
-  std::string selector;                        ///< as device_selector takes it
-  MessageSink on_message;                      ///< loads the validation layer and receives what it says
-  std::optional<AccessPath> access;            ///< forces an access path (tests run both)
-  std::optional<bool> row_stores;              ///< Caps::row_stores; none: where they are known to be faster
-  bool exact_sums = false;                     ///< Caps::exact_sums
-  bool winograd = true;                        ///< Caps::winograd
+  std::string selector;              ///< as device_selector takes it
+  MessageSink on_message;            ///< loads the validation layer and receives what it says
+  std::optional<AccessPath> access;  ///< forces an access path (tests run both)
+  std::optional<bool> row_stores;    ///< Caps::row_stores; none: where they are known to be faster
+  bool exact_sums = false;           ///< Caps::exact_sums
+  /// Caps::winograd; Error where the device, or exact_sums, can't have what it says.
+  WinogradUse winograd = WinogradUse::kWhereFaster;
   KernelFamily kernels = KernelFamily::kAuto;  ///< Caps::kernels; Error where the device can't run the family
   /// Choices measured on the device that was found, for Caps::tuned; empty: none.
   std::function<std::shared_ptr<const TunedChoices>(const Caps&)> tuned;

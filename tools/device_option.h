@@ -31,10 +31,24 @@ inline void add_kernels_option(CLI::App& command, KernelFamily& kernels) {
       ->check(CLI::IsMember({"auto", "registers", "shared", "plain"}));
 }
 
-/// Adds `--no-winograd` to a command.
-inline void add_winograd_option(CLI::App& command, bool& winograd) {
-  command.add_flag("!--no-winograd", winograd,
-                   "Convolve directly even where Winograd's algorithm is faster: it rounds somewhat more");
+/// Adds `--winograd auto|never|2|4` to a command, and `--no-winograd` for never.
+inline void add_winograd_option(CLI::App& command, WinogradUse& winograd) {
+  static const std::map<std::string, WinogradUse> uses{{"auto", WinogradUse::kWhereFaster},
+                                                       {"never", WinogradUse::kNever},
+                                                       {"2", WinogradUse::kTiles2},
+                                                       {"4", WinogradUse::kTiles4}};
+  CLI::Option* use =
+      command
+          .add_option_function<std::string>(
+              "--winograd", [&winograd](const std::string& name) { winograd = uses.at(name); },
+              "Winograd's algorithm for 3x3 convolutions of stride 1, which rounds somewhat more: auto "
+              "(default; "
+              "where it is faster), never, or wherever it can run with tiles of 2 x 2 or 4 x 4 outputs (2, 4)")
+          ->check(CLI::IsMember({"auto", "never", "2", "4"}));
+  command
+      .add_flag_callback(
+          "--no-winograd", [&winograd] { winograd = WinogradUse::kNever; }, "The same as --winograd never")
+      ->excludes(use);
 }
 
 }  // namespace vkopple

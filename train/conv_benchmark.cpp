@@ -20,43 +20,33 @@ namespace {
 struct Case {
   std::string name;
   TimedConvolution shape;
-  std::string kernel;
   std::shared_ptr<const Op> op;
   Shape x;
   Shape w;
   std::optional<ConvShape> convolution;  ///< where algorithms can be chosen
 };
 
-Case plain_case(const TimedConvolution& s, const std::string& kernel) {
-  const auto op = std::make_shared<Conv2d>(
-      Conv2dOptions{.stride = s.stride, .padding = s.kernel / 2, .kernel = kernel}, true);
+Case plain_case(const TimedConvolution& s) {
+  const auto op = std::make_shared<Conv2d>(Conv2dOptions{.stride = s.stride, .padding = s.kernel / 2}, true);
   const Shape x{s.batch, s.in_channels, s.size, s.size};
   const Shape w{s.out_channels, s.in_channels, s.kernel, s.kernel};
   return {fmt::format("{}x{}{}  {},{},{},{} -> {}", s.kernel, s.kernel, s.stride == 2 ? " stride 2" : "",
                       s.batch, s.in_channels, s.size, s.size, s.out_channels),
           s,
-          kernel,
           op,
           x,
           w,
           op->shape_of(x, w)};
 }
 
-Case transposed_case(const TimedConvolution& s, const std::string& kernel) {
+Case transposed_case(const TimedConvolution& s) {
   return {fmt::format("transposed {}x{}  {},{},{},{} -> {}", s.kernel, s.kernel, s.batch, s.in_channels, s.size,
                       s.size, s.out_channels),
           s,
-          kernel,
-          std::make_shared<ConvTranspose2d>(ConvTranspose2dOptions{.kernel = kernel}, true),
+          std::make_shared<ConvTranspose2d>(ConvTranspose2dOptions{}, true),
           {s.batch, s.in_channels, s.size, s.size},
           {s.in_channels, s.out_channels, s.kernel, s.kernel},
           std::nullopt};
-}
-
-/// Whether the kernel asked for can run the case.
-bool can_run(const TimedConvolution& shape, const std::string& kernel, const Caps& caps) {
-  if (shape.transposed) return is_conv_kernel(kernel) && can_run_conv_kernel(kernel, caps);
-  return can_run_convolution(kernel, *plain_case(shape, kernel).convolution, caps);
 }
 
 /// Operands of a case on the device, and the time of what is recorded on them.
@@ -106,13 +96,13 @@ class Timing {
 
   std::string product_algorithm(ConvDirection direction) const {
     const auto& shape = case_.convolution;
-    return std::string(name_of(shape ? choose_convolution(*shape, direction, device_.caps(), case_.kernel)
-                                     : ConvAlgorithm::kDirect));
+    return std::string(
+        name_of(shape ? choose_convolution(*shape, direction, device_.caps()) : ConvAlgorithm::kDirect));
   }
   std::string weight_gradient_algorithm() const {
     const auto& shape = case_.convolution;
     return std::string(
-        name_of(shape ? choose_weight_gradient(*shape, device_.caps(), case_.kernel) : ConvAlgorithm::kDirect));
+        name_of(shape ? choose_weight_gradient(*shape, device_.caps()) : ConvAlgorithm::kDirect));
   }
 
   double gflops(const std::function<void(Recorder&)>& record) {
@@ -146,8 +136,7 @@ class Timing {
 
 }  // namespace
 
-std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats,
-                                               const std::string& kernel) {
+std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats) {
   const auto plain = [&](int64_t ci, int64_t size, int64_t co, int64_t taps, int64_t stride) {
     return TimedConvolution{false, taps, stride, batch, ci, size, co};
   };
@@ -160,8 +149,7 @@ std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t bat
         plain(256, 8, 256, 3, 1), plain(32, 128, 32, 3, 1), plain(16, 128, 16, 3, 1), plain(8, 128, 8, 3, 1),
         plain(3, 128, 64, 3, 1), plain(64, 128, 64, 3, 2), plain(640, 16, 128, 1, 1), transposed(64, 64, 64, 3),
         transposed(32, 64, 16, 2)}) {
-    if (!can_run(shape, kernel, device.caps())) continue;
-    const Case c = shape.transposed ? transposed_case(shape, kernel) : plain_case(shape, kernel);
+    const Case c = shape.transposed ? transposed_case(shape) : plain_case(shape);
     timings.push_back(Timing(device, c, repeats).run());
   }
   return timings;

@@ -32,9 +32,7 @@ struct ConvTiming {
   ProductTiming forward, data_gradient, weight_gradient;
 };
 
-/// Times the shapes that the networks are made of. `kernel` forces an algorithm (graph/conv/convolution.h) on
-/// the shapes that can run it and leaves the others out.
-std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats,
-                                               const std::string& kernel = {});
+/// Times the shapes that the networks are made of, as the device would run them.
+std::vector<ConvTiming> benchmark_convolutions(const Device& device, int64_t batch, int repeats);
 
 }  // namespace vkopple

@@ -17,12 +17,20 @@ namespace {
 
 constexpr double kWorthAChange = 0.97;
 
-std::optional<ConvShape> shape_of(const Graph& graph, const Node& node) {
-  const auto input = [&](size_t i) -> const Shape& { return graph.info(node.inputs[i]).spec.shape; };
-  if (const auto* conv = dynamic_cast<const Conv2d*>(node.op.get())) return conv->shape_of(input(0), input(1));
-  if (dynamic_cast<const ConvTranspose2d*>(node.op.get()) != nullptr)
-    return ConvTranspose2d::convolution_of(input(0), input(1));
-  return std::nullopt;
+struct Convolution {
+  ConvShape shape;
+  ConvStorage storage;
+};
+
+/// The convolution that a node is, or whose transposed it is.
+std::optional<Convolution> convolution_of(const Graph& graph, const Node& node) {
+  const auto* conv = dynamic_cast<const Conv2d*>(node.op.get());
+  if (conv == nullptr && dynamic_cast<const ConvTranspose2d*>(node.op.get()) == nullptr) return std::nullopt;
+  const TensorSpec& in = graph.info(node.inputs[0]).spec;
+  const TensorSpec& out = graph.info(node.outputs[0]).spec;
+  const Shape& w = graph.info(node.inputs[1]).spec.shape;
+  if (conv != nullptr) return Convolution{conv->shape_of(in.shape, w), {.x = in.storage, .y = out.storage}};
+  return Convolution{ConvTranspose2d::convolution_of(in.shape, w), {.x = out.storage, .y = in.storage}};
 }
 
 /// Operands of a case on the device, of the magnitude that training's have.
@@ -31,9 +39,9 @@ class Operands {
   Operands(const Device& device, const TuningCase& tuned)
       : device_(device), case_(tuned), arena_(device, MemoryKind::kDevice, "tuning") {
     const ConvShape& s = tuned.shape;
-    x_ = place(channels4({s.n, s.ci, s.h, s.w}).bytes());
-    y_ = place(channels4({s.n, s.co, s.ho, s.wo}).bytes());
-    w_ = place(row_major({s.co, s.ci, s.kernel, s.kernel}).bytes());
+    x_ = place(stored_as(channels4({s.n, s.ci, s.h, s.w}), tuned.storage.x));
+    y_ = place(stored_as(channels4({s.n, s.co, s.ho, s.wo}), tuned.storage.y));
+    w_ = place(row_major({s.co, s.ci, s.kernel, s.kernel}));
     const uint64_t scratch =
         tuned.direction ? conv_product_scratch(s, *tuned.direction) : weight_gradient_scratch(s, device.caps());
     scratch_ = arena_.allocate(scratch);
@@ -47,11 +55,13 @@ class Operands {
   }
 
  private:
-  Slice place(uint64_t bytes) {
-    const Slice slice = arena_.allocate(bytes);
+  Slice place(const TensorSpec& spec) {
+    Slice slice = arena_.allocate(spec.bytes());
     Recorder recorder(device_);
-    recorder.fill(slice, 0x3c23d70a);  // 0.01F
+    // 0.01 as a float, or twice as float16.
+    recorder.fill(slice, spec.storage == Storage::kFloat16 ? 0x211f211f : 0x3c23d70a);
     recorder.finish()->run();
+    slice.storage = spec.storage;
     return slice;
   }
 
@@ -66,20 +76,21 @@ class Operands {
 std::vector<TuningCase> tuning_cases(const Graph& graph, const Caps& caps) {
   std::vector<TuningCase> cases;
   std::set<std::string> keys;
-  const auto add = [&](const ConvShape& shape, std::optional<ConvDirection> direction) {
+  const auto add = [&](const Convolution& convolution, std::optional<ConvDirection> direction) {
+    const auto& [shape, storage] = convolution;
     const ConvAlgorithm algorithm =
         direction ? choose_convolution(shape, *direction, caps) : choose_weight_gradient(shape, caps);
     if (algorithm != ConvAlgorithm::kDirect) return;
-    const auto tuning =
-        direction ? conv_product_tuning(shape, *direction, caps) : weight_gradient_tuning(shape, caps);
+    const auto tuning = direction ? conv_product_tuning(shape, *direction, caps, storage)
+                                  : weight_gradient_tuning(shape, caps, storage);
     if (tuning && !tuning->candidates.empty() && keys.insert(tuning->key).second)
-      cases.push_back({shape, direction, *tuning});
+      cases.push_back({shape, direction, storage, *tuning});
   };
   for (const Node& node : graph.nodes())
-    if (const auto shape = shape_of(graph, node)) {
-      add(*shape, ConvDirection::kForward);
-      add(*shape, ConvDirection::kTransposed);
-      add(*shape, std::nullopt);
+    if (const auto convolution = convolution_of(graph, node)) {
+      add(*convolution, ConvDirection::kForward);
+      add(*convolution, ConvDirection::kTransposed);
+      add(*convolution, std::nullopt);
     }
   return cases;
 }

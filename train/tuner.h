@@ -17,6 +17,7 @@ namespace vkopple {
 struct TuningCase {
   ConvShape shape;
   std::optional<ConvDirection> direction;  ///< none: the weight gradient
+  ConvStorage storage;
   ConvTuning tuning;
 };
 

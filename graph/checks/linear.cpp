@@ -44,6 +44,8 @@ void check_linear(CheckList& list) {
   list.push_back(linear_case({2, 3}, 261, true));
   list.push_back(linear_case({2, 4}, 260, false));
   list.push_back(linear_case({258, 3}, 2, true));
+  list.push_back(linear_case({37, 13}, 70, true));  // beyond one tile of shared memory
+  list.push_back(linear_case({40, 12}, 136, true));
 }
 
 }  // namespace vkopple

@@ -183,8 +183,9 @@ ConvTile standard_shuffle_tile(const ProductPush& push, int64_t out_channels, co
                              std::max(1U, std::thread::hardware_concurrency()));
 }
 
-std::string shuffle_key(const ConvShape& shape, ConvDirection direction) {
-  return tuning_key(direction == ConvDirection::kForward ? kShuffleForward : kShuffleTransposed, shape);
+std::string shuffle_key(const ConvShape& shape, ConvDirection direction, ConvStorage storage) {
+  return tuning_key(direction == ConvDirection::kForward ? kShuffleForward : kShuffleTransposed, shape,
+                    storage);
 }
 
 /// Vectors of input channels that a kernel takes in straight code instead of a loop: all or (0) none. Loops
@@ -224,14 +225,14 @@ uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
   return std::max(Packing(shape, direction).bytes(), conv_shared_scratch(shape, direction));
 }
 
-std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
-                                              const Caps& caps) {
+std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction, const Caps& caps,
+                                              ConvStorage storage) {
   const std::string_view family = chosen_kernel({}, shape, direction, caps);
   const ProductPush push = product_push(shape, direction);
-  if (family == kShared) return conv_shared_tuning(shape, direction, push, caps);
+  if (family == kShared) return conv_shared_tuning(shape, direction, push, caps, storage);
   if (family != kShuffle) return std::nullopt;
   const int64_t out = channels_of(shape, direction).out;
-  return register_tuning(shuffle_key(shape, direction), standard_shuffle_tile(push, out, caps), out);
+  return register_tuning(shuffle_key(shape, direction, storage), standard_shuffle_tile(push, out, caps), out);
 }
 
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
@@ -249,7 +250,9 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
   const int64_t out = channels_of(shape, direction).out;
   const ConvWork work = work_of(push, out, family == kShuffle ? caps.subgroup_size : caps.flat_workgroup());
   const auto tuned =
-      family == kShuffle ? tuned_conv_tile(shuffle_key(shape, direction), out, caps) : std::nullopt;
+      family == kShuffle
+          ? tuned_conv_tile(shuffle_key(shape, direction, operands.storage(direction)), out, caps)
+          : std::nullopt;
   const ConvTile tile = tuned                ? *tuned
                         : family == kShuffle ? standard_shuffle_tile(push, out, caps)
                                              : choose_uniform_tile(work);

@@ -22,6 +22,11 @@ struct ConvOperands {
   Slice bias;  ///< row-major, one for each channel of `out`; may be empty
   Slice out;
   uint32_t accumulate = 0;  ///< 1: out += …
+
+  ConvStorage storage(ConvDirection direction) const {
+    return direction == ConvDirection::kForward ? ConvStorage{in.storage, out.storage}
+                                                : ConvStorage{out.storage, in.storage};
+  }
 };
 
 /// Families of kernels, by the mechanism that brings weights to invocations of the same output channels.
@@ -38,8 +43,8 @@ bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction);
 
 /// What can be tuned, where the family that runs has tiles to choose.
-std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
-                                              const Caps& caps);
+std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction, const Caps& caps,
+                                              ConvStorage storage = {});
 
 /// Records one product. Stride 1 or 2 (for kForward any), any kernel, padding and dilation. Throws Error for a
 /// kernel that the device can't run.

@@ -59,8 +59,8 @@ SharedWork work_of(const ProductPush& push) {
           .in4 = push.in4};
 }
 
-std::string key_of(const ConvShape& shape, ConvDirection direction) {
-  return tuning_key(direction == ConvDirection::kForward ? kSharedForward : kSharedTransposed, shape);
+std::string key_of(const ConvShape& shape, ConvDirection direction, ConvStorage storage) {
+  return tuning_key(direction == ConvDirection::kForward ? kSharedForward : kSharedTransposed, shape, storage);
 }
 
 /// Tiles of one phase in the first two directions, phases in the third.
@@ -83,8 +83,8 @@ uint64_t conv_shared_scratch(const ConvShape& shape, ConvDirection direction) {
 }
 
 ConvTuning conv_shared_tuning(const ConvShape& shape, ConvDirection direction, const ProductPush& push,
-                              const Caps& caps) {
-  return shared_tuning(key_of(shape, direction), choose_shared_tile(work_of(push), caps), caps);
+                              const Caps& caps, ConvStorage storage) {
+  return shared_tuning(key_of(shape, direction, storage), choose_shared_tile(work_of(push), caps), caps);
 }
 
 void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirection direction, ProductPush push,
@@ -95,7 +95,7 @@ void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirectio
   record_pack(recorder, packed, direction, operands, weights);
 
   const SharedWork work = work_of(push);
-  const auto tuned = tuned_shared_tile(key_of(shape, direction), caps);
+  const auto tuned = tuned_shared_tile(key_of(shape, direction, operands.storage(direction)), caps);
   const SharedTile tile = tuned ? *tuned : choose_shared_tile(work, caps);
   push.bias = static_cast<int32_t>(packed.weight_vectors());
   push.tiles = static_cast<int32_t>((4 * work.out4 + tile.tile_channels() - 1) / tile.tile_channels());

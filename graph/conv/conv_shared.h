@@ -17,7 +17,7 @@ uint64_t conv_shared_scratch(const ConvShape& shape, ConvDirection direction);
 
 /// What can be tuned.
 ConvTuning conv_shared_tuning(const ConvShape& shape, ConvDirection direction, const ProductPush& push,
-                              const Caps& caps);
+                              const Caps& caps, ConvStorage storage);
 
 /// Records one product; `push` describes the product but for tiles and bias.
 void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirection direction, ProductPush push,

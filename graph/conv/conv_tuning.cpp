@@ -47,9 +47,11 @@ void add(ConvTuning& tuning, Numbers numbers) {
 
 }  // namespace
 
-std::string tuning_key(std::string_view kernel, const ConvShape& s) {
-  return fmt::format("{} {}x{} stride {} padding {} dilation {}, {}x{}x{}x{} to {}x{}x{}", kernel, s.kernel,
-                     s.kernel, s.stride, s.padding, s.dilation, s.n, s.ci, s.h, s.w, s.co, s.ho, s.wo);
+std::string tuning_key(std::string_view kernel, const ConvShape& s, ConvStorage storage) {
+  const auto name = [](Storage kind) { return kind == Storage::kFloat16 ? "float16" : "float32"; };
+  return fmt::format("{} {}x{} stride {} padding {} dilation {}, {}x{}x{}x{} {} to {}x{}x{} {}", kernel,
+                     s.kernel, s.kernel, s.stride, s.padding, s.dilation, s.n, s.ci, s.h, s.w, name(storage.x),
+                     s.co, s.ho, s.wo, name(storage.y));
 }
 
 bool is_tuned_choice(std::string_view key, const Numbers& numbers, const Caps& caps) {

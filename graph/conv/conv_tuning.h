@@ -8,6 +8,7 @@
 #include "graph/conv/conv_shape.h"
 #include "graph/conv/conv_tile.h"
 #include "graph/conv/shared_tile.h"
+#include "runtime/storage.h"
 
 namespace vkopple {
 
@@ -25,8 +26,14 @@ constexpr std::string_view kSharedForward = "conv_shared.forward";
 constexpr std::string_view kSharedTransposed = "conv_shared.transposed";
 constexpr std::string_view kSharedGradient = "weight_gradient_shared";
 
-/// "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 4x64x128x128 to 64x128x128".
-std::string tuning_key(std::string_view kernel, const ConvShape& shape);
+/// How a convolution's x and y, and their gradients with them, are stored; tiles are tuned for each by itself.
+struct ConvStorage {
+  Storage x = Storage::kFloat32;
+  Storage y = Storage::kFloat32;
+};
+
+/// "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 4x64x128x128 float32 to 64x128x128 float16".
+std::string tuning_key(std::string_view kernel, const ConvShape& shape, ConvStorage storage = {});
 
 /// Whether the device can run the tile that these numbers describe, for the kernel that the key begins with.
 bool is_tuned_choice(std::string_view key, const std::vector<uint32_t>& numbers, const Caps& caps);

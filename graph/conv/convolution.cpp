@@ -35,11 +35,17 @@ std::string_view direct_kernel(std::string_view kernel) {
 /// results shall not depend on how many cores a process may use.
 constexpr int64_t kThreads = 2;
 
-/// The algorithm of least cost; cost(tile) is Winograd's in nanoseconds.
+/// The algorithm that Caps says, or the one of least cost; cost(tile) is Winograd's in nanoseconds.
 template <class Cost>
-ConvAlgorithm cheapest(const ConvShape& shape, const Caps& caps, double direct, const Cost& cost) {
+ConvAlgorithm choose(const ConvShape& shape, const Caps& caps, double direct, const Cost& cost) {
+  if (caps.exact_sums || caps.winograd == WinogradUse::kNever) return ConvAlgorithm::kDirect;
+  if (caps.winograd != WinogradUse::kWhereFaster) {
+    const bool tiles4 = caps.winograd == WinogradUse::kTiles4;
+    const ConvAlgorithm forced = tiles4 ? ConvAlgorithm::kWinograd4 : ConvAlgorithm::kWinograd2;
+    return can_winograd(shape, tile_of(forced), caps) ? forced : ConvAlgorithm::kDirect;
+  }
   const bool registers = caps.kernels == KernelFamily::kAuto || caps.kernels == KernelFamily::kRegisters;
-  if (!caps.cpu() || !registers || caps.exact_sums || !caps.winograd) return ConvAlgorithm::kDirect;
+  if (!caps.cpu() || !registers) return ConvAlgorithm::kDirect;
   ConvAlgorithm best = ConvAlgorithm::kDirect;
   for (const ConvAlgorithm algorithm : {ConvAlgorithm::kWinograd2, ConvAlgorithm::kWinograd4}) {
     if (!can_winograd(shape, tile_of(algorithm), caps)) continue;
@@ -89,16 +95,16 @@ ConvAlgorithm choose_convolution(const ConvShape& s, ConvDirection direction, co
   if (const auto forced = forced_algorithm(kernel)) return *forced;
   // 0.31 ns for 8 multiply-adds of one lane each, measured where channels fill the direct kernel's tiles.
   const double direct = s.flop() / 16 * 0.31 / static_cast<double>(kThreads);
-  return cheapest(s, caps, direct,
-                  [&](WinogradTile tile) { return winograd_product_cost(s, direction, tile, caps, kThreads); });
+  return choose(s, caps, direct,
+                [&](WinogradTile tile) { return winograd_product_cost(s, direction, tile, caps, kThreads); });
 }
 
 ConvAlgorithm choose_weight_gradient(const ConvShape& s, const Caps& caps, std::string_view kernel) {
   require_can(kernel, s, caps);
   if (const auto forced = forced_algorithm(kernel)) return *forced;
   const double direct = s.flop() / 16 * 0.33 / static_cast<double>(kThreads);
-  return cheapest(s, caps, direct,
-                  [&](WinogradTile tile) { return winograd_weight_gradient_cost(s, tile, caps, kThreads); });
+  return choose(s, caps, direct,
+                [&](WinogradTile tile) { return winograd_weight_gradient_cost(s, tile, caps, kThreads); });
 }
 
 uint64_t convolution_scratch(const ConvShape& shape, ConvDirection direction, const Caps& caps,

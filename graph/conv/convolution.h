@@ -25,10 +25,10 @@ bool is_convolution_kernel(std::string_view kernel);
 /// Whether the device can run it on this shape.
 bool can_run_convolution(std::string_view kernel, const ConvShape& shape, const Caps& caps);
 
-/// The algorithm that is taken: the one that `kernel` forces, else the one estimated to be fastest. Devices of
-/// types other than CPU, those that keep exact sums or are held to other families of kernels, and those without
-/// Caps::winograd stay direct. Throws Error
-/// for one that the device can't run on this shape.
+/// The algorithm that is taken: the one that `kernel` forces, else the one that Caps::winograd forces where it
+/// can run, else the one estimated to be fastest. Devices that keep exact sums stay direct; so do, unless
+/// forced, those of types other than CPU and those held to other families of kernels. Throws Error for a kernel
+/// that the device can't run on this shape.
 ConvAlgorithm choose_convolution(const ConvShape& shape, ConvDirection direction, const Caps& caps,
                                  std::string_view kernel = {});
 ConvAlgorithm choose_weight_gradient(const ConvShape& shape, const Caps& caps, std::string_view kernel = {});

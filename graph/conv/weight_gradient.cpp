@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "graph/conv/weight_gradient_partial.h"
 #include "runtime/error.h"
 
@@ -26,6 +28,15 @@ WeightGradientKernel choose(const ConvShape& shape, const Caps& caps, WeightGrad
 
 uint64_t partial_bytes(const ConvShape& shape, const WeightGradientPartial& partial) {
   return static_cast<uint64_t>(partial.strips * strip_vectors(shape)) * 16;
+}
+
+/// Each storage may have a tuned tile, whose sums are cut in another way.
+uint64_t shared_scratch(const ConvShape& shape, const Caps& caps) {
+  uint64_t bytes = 0;
+  for (const Storage x : {Storage::kFloat32, Storage::kFloat16})
+    for (const Storage y : {Storage::kFloat32, Storage::kFloat16})
+      bytes = std::max(bytes, partial_bytes(shape, plan_shared(shape, caps, {x, y}).partial));
+  return bytes;
 }
 
 struct SumPush {
@@ -65,15 +76,16 @@ uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, Weigh
     case WeightGradientKernel::kRegister:
       return partial_bytes(shape, plan_register(shape, caps).partial);
     case WeightGradientKernel::kShared:
-      return partial_bytes(shape, plan_shared(shape, caps).partial);
+      return shared_scratch(shape, caps);
     default:
       return partial_bytes(shape, plan_simple(shape).partial);
   }
 }
 
-std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps) {
+std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps,
+                                                 ConvStorage storage) {
   if (choose(shape, caps, WeightGradientKernel::kAuto) != WeightGradientKernel::kShared) return std::nullopt;
-  return shared_tuning(shape, caps);
+  return shared_tuning(shape, caps, storage);
 }
 
 void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x, Slice dy, Slice dw,
@@ -90,9 +102,10 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
         record_register(recorder, plan, x, dy, partial);
       });
     case WeightGradientKernel::kShared:
-      return record(plan_shared(shape, caps), [&](const SharedPlan& plan, const Slice& partial) {
-        record_shared(recorder, shape, plan, x, dy, partial);
-      });
+      return record(plan_shared(shape, caps, {x.storage, dy.storage}),
+                    [&](const SharedPlan& plan, const Slice& partial) {
+                      record_shared(recorder, shape, plan, x, dy, partial);
+                    });
     default:
       return record(plan_simple(shape), [&](const SimplePlan& plan, const Slice& partial) {
         record_simple(recorder, shape, plan, x, dy, partial);

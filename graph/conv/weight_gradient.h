@@ -21,12 +21,13 @@ enum class WeightGradientKernel {
 /// Whether the device can run a kernel on this shape.
 bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel);
 
-/// Bytes that record_weight_gradient() needs.
+/// Bytes that record_weight_gradient() needs, however x and dy are stored.
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps,
                                  WeightGradientKernel kernel = WeightGradientKernel::kAuto);
 
 /// What can be tuned, where the kernel that runs has tiles to choose.
-std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps);
+std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps,
+                                                 ConvStorage storage = {});
 
 /// dw[co][ci][ky][kx] (+)= Σ n,yo,xo dy[n,co,yo,xo] · x[n, ci, yo·stride + ky·dilation − padding, …], x zero
 /// outside. x and dy NC4HW4 with zeros in their padding lanes, dw row-major (co, ci, kernel, kernel).

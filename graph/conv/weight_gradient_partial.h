@@ -60,8 +60,8 @@ struct SharedPlan {
   WeightGradientPartial partial;
 };
 bool can_shared(const Caps& caps);
-ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps);
-SharedPlan plan_shared(const ConvShape& shape, const Caps& caps);
+ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps, ConvStorage storage);
+SharedPlan plan_shared(const ConvShape& shape, const Caps& caps, ConvStorage storage);
 void record_shared(Recorder& recorder, const ConvShape& shape, const SharedPlan& plan, const Slice& x,
                    const Slice& dy, const Slice& partial);
 

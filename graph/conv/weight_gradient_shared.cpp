@@ -31,14 +31,14 @@ bool can_shared(const Caps& caps) {
                      [&](const SharedGradientTile& tile) { return fits(tile, caps); });
 }
 
-ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps) {
-  return shared_gradient_tuning(tuning_key(kSharedGradient, shape),
+ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps, ConvStorage storage) {
+  return shared_gradient_tuning(tuning_key(kSharedGradient, shape, storage),
                                 choose_shared_gradient_tile(work_of(shape), caps), caps);
 }
 
-SharedPlan plan_shared(const ConvShape& s, const Caps& caps) {
+SharedPlan plan_shared(const ConvShape& s, const Caps& caps, ConvStorage storage) {
   const SharedGradientWork work = work_of(s);
-  const auto tuned = tuned_shared_gradient_tile(tuning_key(kSharedGradient, s), caps);
+  const auto tuned = tuned_shared_gradient_tile(tuning_key(kSharedGradient, s, storage), caps);
   SharedPlan plan{
       .tile = tuned ? *tuned : choose_shared_gradient_tile(work, caps), .strip_pixels = 0, .partial = {}};
   const int64_t depth = plan.tile.depth;

@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "graph/conv/convolution.h"
-#include "graph/conv/weight_gradient.h"
 
 namespace vkopple {
 namespace {
@@ -54,45 +51,20 @@ std::vector<TensorSpec> Conv2d::infer(std::span<const TensorSpec> x) const {
   return {channels4({shape.n, shape.co, shape.ho, shape.wo})};
 }
 
+ConvOp Conv2d::conv_of(const Shape& x, const Shape& w) const {
+  return {shape_of(x, w), ConvDirection::kForward, has_bias_, options_.kernel};
+}
+
 Needs Conv2d::needs(std::span<const TensorSpec> x, const Caps& caps) const {
-  const ConvShape shape = shape_of(x[0].shape, x[1].shape);
-  Needs needs;
-  needs.forward_scratch = convolution_scratch(shape, ConvDirection::kForward, caps, options_.kernel);
-  needs.backward_scratch =
-      std::max(convolution_scratch(shape, ConvDirection::kTransposed, caps, options_.kernel),
-               convolution_weight_gradient_scratch(shape, caps, options_.kernel));
-  if (has_bias_)
-    needs.backward_scratch = std::max(needs.backward_scratch, bias_gradient_scratch(infer(x)[0], caps));
-  needs.inputs_for_backward = 0b011;
-  needs.outputs_for_backward = 0;
-  needs.forward_flop = shape.flop();
-  needs.backward_flop = 2 * shape.flop();
-  return needs;
+  return conv_of(x[0].shape, x[1].shape).needs(caps);
 }
 
 void Conv2d::record_forward(Recorder& recorder, const Forward& io) const {
-  const ConvShape shape = shape_of(io.x[0].shape(), io.x[1].shape());
-  record_convolution(recorder, shape, ConvDirection::kForward,
-                     {.in = io.x[0].slice,
-                      .w = io.x[1].slice,
-                      .bias = has_bias_ ? io.x[2].slice : Slice{},
-                      .out = io.y[0].slice},
-                     io.scratch, options_.kernel);
+  conv_of(io.x[0].shape(), io.x[1].shape()).record_forward(recorder, io);
 }
 
 void Conv2d::record_backward(Recorder& recorder, const Backward& io) const {
-  const ConvShape shape = shape_of(io.x[0].shape(), io.x[1].shape());
-  const Slice dy = io.dy[0].slice;
-  if (io.wants(0))
-    record_convolution(
-        recorder, shape, ConvDirection::kTransposed,
-        {.in = dy, .w = io.x[1].slice, .bias = {}, .out = io.dx[0].slice, .accumulate = io.accumulates(0)},
-        io.scratch, options_.kernel);
-  if (io.wants(1))
-    record_convolution_weight_gradient(recorder, shape, io.x[0].slice, dy, io.dx[1].slice, io.accumulates(1),
-                                       io.scratch, options_.kernel);
-  if (has_bias_ && io.wants(2))
-    record_bias_gradient(recorder, io.dy[0].spec, dy, io.dx[2].slice, io.accumulates(2), io.scratch);
+  conv_of(io.x[0].shape(), io.x[1].shape()).record_backward(recorder, io);
 }
 
 Value conv2d(Value x, Value w, Value b, const Conv2dOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "graph/conv/conv_shape.h"
+#include "graph/conv/conv_op.h"
 #include "graph/graph.h"
 
 namespace vkopple {
@@ -29,6 +29,8 @@ class Conv2d : public Op {
   ConvShape shape_of(const Shape& x, const Shape& w) const;
 
  private:
+  ConvOp conv_of(const Shape& x, const Shape& w) const;
+
   Conv2dOptions options_;
   bool has_bias_;
 };

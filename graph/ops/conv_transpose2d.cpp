@@ -2,10 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "graph/conv/conv_product.h"
-#include "graph/conv/weight_gradient.h"
 
 namespace vkopple {
 ConvShape ConvTranspose2d::convolution_of(const Shape& x, const Shape& w) {
@@ -37,42 +34,20 @@ std::vector<TensorSpec> ConvTranspose2d::infer(std::span<const TensorSpec> x) co
   return {channels4({in[0], w[1], 2 * in[2], 2 * in[3]})};
 }
 
+ConvOp ConvTranspose2d::conv_of(const Shape& x, const Shape& w) const {
+  return {convolution_of(x, w), ConvDirection::kTransposed, has_bias_, options_.kernel};
+}
+
 Needs ConvTranspose2d::needs(std::span<const TensorSpec> x, const Caps& caps) const {
-  const ConvShape shape = convolution_of(x[0].shape, x[1].shape);
-  Needs needs;
-  needs.forward_scratch = conv_product_scratch(shape, ConvDirection::kTransposed);
-  needs.backward_scratch =
-      std::max(conv_product_scratch(shape, ConvDirection::kForward), weight_gradient_scratch(shape, caps));
-  if (has_bias_)
-    needs.backward_scratch = std::max(needs.backward_scratch, bias_gradient_scratch(infer(x)[0], caps));
-  needs.inputs_for_backward = 0b011;
-  needs.outputs_for_backward = 0;
-  needs.forward_flop = shape.flop();
-  needs.backward_flop = 2 * shape.flop();
-  return needs;
+  return conv_of(x[0].shape, x[1].shape).needs(caps);
 }
 
 void ConvTranspose2d::record_forward(Recorder& recorder, const Forward& io) const {
-  record_conv_product(recorder, convolution_of(io.x[0].shape(), io.x[1].shape()), ConvDirection::kTransposed,
-                      {.in = io.x[0].slice,
-                       .w = io.x[1].slice,
-                       .bias = has_bias_ ? io.x[2].slice : Slice{},
-                       .out = io.y[0].slice},
-                      io.scratch, options_.kernel);
+  conv_of(io.x[0].shape(), io.x[1].shape()).record_forward(recorder, io);
 }
 
 void ConvTranspose2d::record_backward(Recorder& recorder, const Backward& io) const {
-  const ConvShape shape = convolution_of(io.x[0].shape(), io.x[1].shape());
-  const Slice dy = io.dy[0].slice;
-  if (io.wants(0))
-    record_conv_product(
-        recorder, shape, ConvDirection::kForward,
-        {.in = dy, .w = io.x[1].slice, .bias = {}, .out = io.dx[0].slice, .accumulate = io.accumulates(0)},
-        io.scratch, options_.kernel);
-  if (io.wants(1))
-    record_weight_gradient(recorder, shape, dy, io.x[0].slice, io.dx[1].slice, io.accumulates(1), io.scratch);
-  if (has_bias_ && io.wants(2))
-    record_bias_gradient(recorder, io.dy[0].spec, dy, io.dx[2].slice, io.accumulates(2), io.scratch);
+  conv_of(io.x[0].shape(), io.x[1].shape()).record_backward(recorder, io);
 }
 
 Value conv_transpose2d(Value x, Value w, Value b, const ConvTranspose2dOptions& options) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "graph/conv/conv_shape.h"
+#include "graph/conv/conv_op.h"
 #include "graph/graph.h"
 
 namespace vkopple {
@@ -29,6 +29,8 @@ class ConvTranspose2d : public Op {
   static ConvShape convolution_of(const Shape& x, const Shape& w);
 
  private:
+  ConvOp conv_of(const Shape& x, const Shape& w) const;
+
   ConvTranspose2dOptions options_;
   bool has_bias_;
 };

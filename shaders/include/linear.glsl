@@ -1,6 +1,7 @@
-// What the kernels of y = x wᵀ + b share: x (rows, inputs), w (outputs, inputs), y (rows, outputs), all row-major, x and y from an
-// offset in elements on. Every operand read in fours has two bindings, name4 and name1: vectors where kVectorInputs or
-// kVectorOutputs says that rows of `inputs` or `outputs` elements start at multiples of 4, else single elements.
+// What the plain kernels of y = x wᵀ + b share: x (rows, inputs), w (outputs, inputs), y (rows, outputs), all row-major, x and y from an
+// offset in elements on. Every operand read in fours has two bindings, name4 and name1: vectors where kVectorInputs or kVectorOutputs
+// says that rows of `inputs` or `outputs` elements start at multiples of 4, else single elements.
+#include "row4.glsl"
 layout(constant_id = 1) const uint kVectorInputs = 1;
 layout(constant_id = 2) const uint kVectorOutputs = 1;
 layout(push_constant) uniform Push {
@@ -15,20 +16,6 @@ layout(push_constant) uniform Push {
 // Terms of a sum that are added up before the total takes them: keeps the rounding of long sums small.
 const uint kRun = 256;
 
-// Elements i … i + 3 of a row of `count` that starts at `at`; zeros beyond its end.
+// Elements i … i + 3 of a row of `count` that starts at `at`; zeros beyond its end. In vectors, i must be below `count`.
 #define row4(name, vectors, at, i, count) \
-  ((vectors) != 0 ? load4(name##4, ((at) + (i)) >> 2) \
-                  : vec4(load1_or_zero(name##1, (i) < (count), (at) + (i)), \
-                         load1_or_zero(name##1, (i) + 1 < (count), (at) + (i) + 1), \
-                         load1_or_zero(name##1, (i) + 2 < (count), (at) + (i) + 2), \
-                         load1_or_zero(name##1, (i) + 3 < (count), (at) + (i) + 3)))
-
-// Writes or adds elements i … i + 3 of such a row, as far as they exist.
-#define add_row4(name, vectors, at, i, count, v, accumulate) \
-  { \
-    vec4 row_ = v; \
-    if ((vectors) != 0) \
-      add4(name##4, ((at) + (i)) >> 2, row_, accumulate) \
-    else \
-      for (uint j_ = 0; j_ < min(4u, (count) - (i)); ++j_) add1(name##1, (at) + (i) + j_, row_[j_], accumulate) \
-  }
+  ((vectors) != 0 ? load4(name##4, ((at) + (i)) >> 2) : singles4(name##1, true, (at) + (i), 1, i, count))

@@ -25,17 +25,18 @@ void main() {
   float total[16];
   for (uint j = 0; j < 16; ++j) total[j] = 0;
   for (uint begin = 0; begin < p.inputs; begin += kRun) {
-    vec4 sum[16];
-    for (uint j = 0; j < 16; ++j) sum[j] = vec4(0);
+    float sum[16];
+    for (uint j = 0; j < 16; ++j) sum[j] = 0;
     for (uint i = begin; i < min(begin + kRun, p.inputs); i += 4) {
       vec4 xs[4];
       for (uint r = 0; r < 4; ++r) xs[r] = row4(x, kVectorInputs, x_at[r], i, p.inputs);
       for (uint c = 0; c < kOutputs; ++c) {
         vec4 ws = row4(w, kVectorInputs, w_at[c], i, p.inputs);
-        for (uint r = 0; r < 4; ++r) sum[c * 4 + r] += xs[r] * ws;
+        for (uint r = 0; r < 4; ++r)
+          for (uint k = 0; k < 4; ++k) sum[c * 4 + r] = fma(xs[r][k], ws[k], sum[c * 4 + r]);
       }
     }
-    for (uint j = 0; j < 16; ++j) total[j] += dot(sum[j], vec4(1));
+    for (uint j = 0; j < 16; ++j) total[j] += sum[j];
   }
   for (uint c = 0; c < kOutputs; ++c) {
     if (o + c >= p.outputs) break;

@@ -59,21 +59,32 @@ TEST(ExactSumsTest, ConvolutionsMatchTheirReferences) {
 /// What has kernels of several families, with each: an op's weight gradient follows Caps alone.
 class KernelFamilyTest : public testing::TestWithParam<KernelFamily> {};
 
-TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
-  const Device* device = family_device(GetParam());
-  if (device == nullptr) GTEST_SKIP() << missing_for(GetParam(), test_device().caps());
+void run_family(const Device& device, KernelFamily family) {
   for (OpChecks checks : all_checks()) {
     if (!checks.op.starts_with("conv") && checks.op != "linear" && checks.op != "lstm") continue;
     // Products may be forced to a kernel by the case: those of other families run elsewhere.
-    std::erase_if(checks.cases, [](const CheckCase& c) {
+    std::erase_if(checks.cases, [&](const CheckCase& c) {
       const auto forced = [&](std::string_view name) { return c.label.ends_with(name); };
       return forced(" winograd2") || forced(" winograd4") ||
-             (GetParam() != KernelFamily::kRegisters && forced(" shuffle")) ||
-             (GetParam() != KernelFamily::kShared && forced(" shared")) ||
-             (GetParam() != KernelFamily::kPlain && forced(" uniform"));
+             (family != KernelFamily::kRegisters && forced(" shuffle")) ||
+             (family != KernelFamily::kShared && forced(" shared")) ||
+             (family != KernelFamily::kPlain && forced(" uniform"));
     });
-    run_all(*device, checks);
+    run_all(device, checks);
   }
+}
+
+TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
+  const Device* device = family_device(GetParam());
+  if (device == nullptr) GTEST_SKIP() << missing_for(GetParam(), test_device().caps());
+  run_family(*device, GetParam());
+}
+
+// GPUs read storage buffers.
+TEST(SharedFamilyTest, MatchesItsReferencesOnTheOtherAccessPath) {
+  const Device* device = other_access_device(KernelFamily::kShared);
+  if (device == nullptr) GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  run_family(*device, KernelFamily::kShared);
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, KernelFamilyTest,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -9,20 +10,13 @@
 #include "graph/conv/weight_gradient.h"
 #include "graph/tensor.h"
 #include "runtime/transfer.h"
+#include "tests/support/gpu_caps.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
 namespace {
 
-Caps gpu() {
-  Caps caps;
-  caps.name = "made up";
-  caps.type = DeviceType::kDiscrete;
-  caps.max_workgroup_size = 128;
-  caps.shared_memory_bytes = 16384;
-  caps.max_groups = {65535, 65535, 65535};
-  return caps;
-}
+using test::gpu_caps;
 
 const ConvShape kShape{2, 20, 13, 11, 36, 13, 11, 3, 1, 1, 1};
 
@@ -31,10 +25,11 @@ void choose(Caps& caps, const std::string& key, std::vector<uint32_t> numbers) {
 }
 
 TEST(ConvTuning, CandidatesFitAndAreNotTheStandard) {
-  const Caps caps = gpu();
+  const Caps caps = gpu_caps();
   const auto tuning = conv_product_tuning(kShape, ConvDirection::kForward, caps);
   ASSERT_TRUE(tuning);
-  EXPECT_EQ(tuning->key, "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 2x20x13x11 to 36x13x11");
+  EXPECT_EQ(tuning->key,
+            "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 2x20x13x11 float32 to 36x13x11 float32");
   EXPECT_GT(tuning->candidates.size(), 10U);
   for (const auto& tile : tuning->candidates) {
     EXPECT_NE(tile, tuning->standard);
@@ -45,15 +40,41 @@ TEST(ConvTuning, CandidatesFitAndAreNotTheStandard) {
   for (const auto& tile : gradient->candidates) EXPECT_TRUE(is_tuned_choice(gradient->key, tile, caps));
 }
 
+TEST(ConvTuning, EveryStorageHasAChoiceOfItsOwn) {
+  const ConvStorage mixed{.x = Storage::kFloat16};
+  Caps caps = gpu_caps();
+  const auto tuning = conv_product_tuning(kShape, ConvDirection::kTransposed, caps, mixed);
+  ASSERT_TRUE(tuning);
+  EXPECT_EQ(tuning->key,
+            "conv_shared.transposed 3x3 stride 1 padding 1 dilation 1, 2x20x13x11 float16 to 36x13x11 float32");
+  // Of the product, x is the output.
+  const Slice half{.storage = Storage::kFloat16};
+  const ConvOperands operands{.in = {}, .w = {}, .bias = {}, .out = half};
+  EXPECT_EQ(tuning_key(kSharedTransposed, kShape, operands.storage(ConvDirection::kTransposed)), tuning->key);
+  EXPECT_NE(tuning_key(kSharedTransposed, kShape, operands.storage(ConvDirection::kForward)), tuning->key);
+
+  // Scratch holds as many strips of sums as the tile of any storage leaves.
+  const auto gradient = weight_gradient_tuning(kShape, caps, mixed);
+  ASSERT_TRUE(gradient);
+  const uint64_t standard = weight_gradient_scratch(kShape, caps);
+  uint64_t most = standard;
+  for (const auto& tile : gradient->candidates) {
+    choose(caps, gradient->key, tile);
+    EXPECT_GE(weight_gradient_scratch(kShape, caps), standard);
+    most = std::max(most, weight_gradient_scratch(kShape, caps));
+  }
+  EXPECT_GT(most, standard);
+}
+
 TEST(ConvTuning, PlainKernelsHaveNoTiles) {
-  Caps caps = gpu();
+  Caps caps = gpu_caps();
   caps.kernels = KernelFamily::kPlain;
   EXPECT_FALSE(conv_product_tuning(kShape, ConvDirection::kForward, caps));
   EXPECT_FALSE(weight_gradient_tuning(kShape, caps));
 }
 
 TEST(ConvTuning, IllegalOrForeignChoicesAreNotTaken) {
-  Caps caps = gpu();
+  Caps caps = gpu_caps();
   const std::string key = tuning_key(kSharedForward, kShape);
   EXPECT_FALSE(tuned_shared_tile(key, caps));
   choose(caps, key, {2, 4, 16, 8, 2});

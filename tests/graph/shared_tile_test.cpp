@@ -7,28 +7,13 @@
 #include "graph/conv/conv_product.h"
 #include "graph/conv/weight_gradient.h"
 #include "graph/tensor.h"
+#include "tests/support/gpu_caps.h"
 
 namespace vkopple {
 namespace {
 
-Caps gpu(uint32_t invocations, uint32_t shared_bytes, uint32_t subgroup) {
-  Caps caps;
-  caps.name = "made up";
-  caps.type = DeviceType::kDiscrete;
-  caps.max_workgroup_size = invocations;
-  caps.shared_memory_bytes = shared_bytes;
-  caps.subgroup_size = subgroup;
-  caps.max_groups = {65535, 65535, 65535};
-  return caps;
-}
-
-/// From Vulkan's minimum to what GPUs of today have, at every size of a subgroup.
-template <class F>
-void each_gpu(const F& f) {
-  for (uint32_t subgroup : {1U, 2U, 4U, 8U, 16U, 32U, 64U, 128U})
-    for (uint32_t invocations : {128U, 256U, 512U, 1024U})
-      for (uint32_t bytes : {16384U, 32768U, 49152U, 65536U}) f(gpu(invocations, bytes, subgroup));
-}
+using test::each_gpu;
+using test::gpu_caps;
 
 const std::vector<ConvShape>& shapes() {
   static const std::vector<ConvShape> all{{1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 1},
@@ -63,8 +48,8 @@ TEST(SharedTile, EveryChoiceFitsTheDevice) {
 }
 
 TEST(SharedTile, GrowsWithTheWorkAndTheDevice) {
-  const Caps least = gpu(128, 16384, 32);
-  const Caps large = gpu(1024, 49152, 32);
+  const Caps least = gpu_caps(128, 16384, 32);
+  const Caps large = gpu_caps(1024, 49152, 32);
   const SharedWork big{.pixels = 327680, .phases = 1, .out4 = 64, .in4 = 16};
   const SharedWork small{.pixels = 256, .phases = 1, .out4 = 64, .in4 = 64};
   const auto area = [](const SharedTile& t) { return t.tile_pixels() * t.tile_channels(); };
@@ -85,15 +70,15 @@ TEST(SharedTile, WhatTheKernelCannotDoIsNone) {
       SharedTile bad = good;
       bad.*member = value;
       EXPECT_FALSE(is_shared_tile(bad)) << value;
-      EXPECT_FALSE(fits(bad, gpu(1024, 1U << 30, 32)));
+      EXPECT_FALSE(fits(bad, gpu_caps(1024, 1U << 30, 32)));
     }
   EXPECT_FALSE(is_shared_tile(SharedTile{8, 8, 8, 8, 2}));          // 256 sums
   EXPECT_FALSE(is_shared_tile(SharedGradientTile{1, 1, 2, 2, 8}));  // fewer invocations than pixels of a slab
   EXPECT_FALSE(is_shared_tile(SharedGradientTile{4, 2, 8, 8, 8}));  // 128 sums
   EXPECT_FALSE(is_shared_tile(SharedGradientTile{1, 1, 8, 24, 8}));
   EXPECT_TRUE(is_shared_tile(SharedGradientTile{1, 1, 8, 8, 8}));
-  EXPECT_FALSE(fits(SharedTile{2, 8, 16, 16, 2}, gpu(128, 65536, 64)));
-  EXPECT_FALSE(fits(SharedTile{2, 4, 64, 1, 2}, gpu(1024, 16384, 64)));
+  EXPECT_FALSE(fits(SharedTile{2, 8, 16, 16, 2}, gpu_caps(128, 65536, 64)));
+  EXPECT_FALSE(fits(SharedTile{2, 4, 64, 1, 2}, gpu_caps(1024, 16384, 64)));
 }
 
 TEST(SharedTile, EveryCandidateIsRight) {
@@ -102,7 +87,7 @@ TEST(SharedTile, EveryCandidateIsRight) {
 }
 
 TEST(KernelFamily, GpusTakeSharedMemoryAndRefuseRegisters) {
-  Caps caps = gpu(128, 16384, 32);
+  Caps caps = gpu_caps(128, 16384, 32);
   caps.subgroup_shuffle = true;
   EXPECT_TRUE(missing_for(KernelFamily::kShared, caps).empty());
   EXPECT_TRUE(missing_for(KernelFamily::kPlain, caps).empty());

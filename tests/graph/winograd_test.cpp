@@ -228,7 +228,7 @@ TEST(ConvolutionChoiceTest, StaysDirectWhereAskedTo) {
   caps.exact_sums = true;
   direct(caps);
   caps = cpu_caps();
-  caps.winograd = false;
+  caps.winograd = WinogradUse::kNever;
   direct(caps);
   caps = cpu_caps();
   caps.subgroup_shuffle = false;

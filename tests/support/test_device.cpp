@@ -36,7 +36,7 @@ const Device* family_device(KernelFamily family, bool exact_sums) {
     device = std::make_unique<Device>(DeviceOptions{.selector = "",
                                                     .on_message = fail_test,
                                                     .exact_sums = exact_sums,
-                                                    .winograd = false,
+                                                    .winograd = WinogradUse::kNever,
                                                     .kernels = family,
                                                     .cache_folder = {}});
   return device.get();
@@ -51,15 +51,28 @@ const Device* plain_stores_device() {
   return device.get();
 }
 
-const Device* other_access_device() {
-  static const auto device = []() -> std::unique_ptr<Device> {
-    const bool texel = test_device().caps().access == AccessPath::kTexel;
-    if (!texel && !test_device().caps().int64) return nullptr;
-    return std::make_unique<Device>(DeviceOptions{.selector = "",
-                                                  .on_message = fail_test,
-                                                  .access = texel ? AccessPath::kStorage : AccessPath::kTexel,
-                                                  .cache_folder = {}});
-  }();
+const Device* winograd_device(WinogradUse use) {
+  static std::map<WinogradUse, std::unique_ptr<Device>> devices;
+  if (!missing_for(use, test_device().caps()).empty()) return nullptr;
+  auto& device = devices[use];
+  if (!device)
+    device = std::make_unique<Device>(
+        DeviceOptions{.selector = "", .on_message = fail_test, .winograd = use, .cache_folder = {}});
+  return device.get();
+}
+
+const Device* other_access_device(KernelFamily family) {
+  static std::map<KernelFamily, std::unique_ptr<Device>> devices;
+  const Caps& caps = test_device().caps();
+  const bool texel = caps.access == AccessPath::kTexel;
+  if ((!texel && !caps.int64) || !missing_for(family, caps).empty()) return nullptr;
+  auto& device = devices[family];
+  if (!device)
+    device = std::make_unique<Device>(DeviceOptions{.selector = "",
+                                                    .on_message = fail_test,
+                                                    .access = texel ? AccessPath::kStorage : AccessPath::kTexel,
+                                                    .kernels = family,
+                                                    .cache_folder = {}});
   return device.get();
 }
 

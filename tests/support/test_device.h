@@ -12,13 +12,16 @@ namespace vkopple {
 const Device& test_device();
 /// The same device with convolutions that keep what their sums round off.
 const Device& exact_device();
-/// The same device made to run one family of direct kernels, without Winograd's algorithm, with plain or exact
+/// The same device made to run one family of kernels, without Winograd's algorithm, with plain or exact
 /// sums; null where it can't.
 const Device* family_device(KernelFamily family, bool exact_sums = false);
 /// The same device made to store lane by lane where it would store rows (Caps::row_stores); null where it does
 /// anyway.
 const Device* plain_stores_device();
-/// The same device with the other access path; null where it can't have it.
-const Device* other_access_device();
+/// The same device whose convolutions are made to use Winograd's algorithm wherever it can run; null where it
+/// can't anywhere.
+const Device* winograd_device(WinogradUse use);
+/// The same device with the other access path; null where it can't have it, or can't run the family.
+const Device* other_access_device(KernelFamily family = KernelFamily::kAuto);
 
 }  // namespace vkopple

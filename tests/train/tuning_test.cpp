@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -6,6 +7,7 @@
 #include "graph/ops/conv2d.h"
 #include "graph/ops/conv_transpose2d.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/gpu_caps.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
 #include "train/tuner.h"
@@ -17,12 +19,7 @@ namespace {
 using test::TempFolder;
 
 Caps gpu() {
-  Caps caps;
-  caps.name = "made up";
-  caps.type = DeviceType::kDiscrete;
-  caps.max_workgroup_size = 128;
-  caps.shared_memory_bytes = 16384;
-  caps.max_groups = {65535, 65535, 65535};
+  Caps caps = test::gpu_caps();
   caps.uuid = {1, 2, 3};
   caps.driver_uuid = {4, 5, 6};
   caps.driver_version = 77;
@@ -49,6 +46,16 @@ TEST(Tuner, CollectsEveryProductOnce) {
   Caps plain = gpu();
   plain.kernels = KernelFamily::kPlain;
   EXPECT_TRUE(tuning_cases(graph, plain).empty());
+}
+
+TEST(Tuner, TellsMixedPrecisionFromFloat32) {
+  Graph graph;
+  graph.store_activations(Storage::kFloat16);
+  build(graph);
+  const auto keys = [&](size_t i) { return tuning_cases(graph, gpu()).at(i).tuning.key; };
+  EXPECT_EQ(tuning_cases(graph, gpu()).size(), 12U);  // the first convolution's input stays float32
+  EXPECT_THAT(keys(0), testing::HasSubstr("2x8x16x16 float32 to 8x16x16 float16"));
+  EXPECT_THAT(keys(3), testing::HasSubstr("2x8x16x16 float16 to 8x16x16 float16"));
 }
 
 TEST(Tuner, TakesTheFastestThatIsWorthAChange) {
@@ -87,7 +94,8 @@ TEST(Tuner, TimesEveryTileAndRemembersWhatDiffers) {
   EXPECT_EQ(choices, (TunedChoices{{"other", {1}}}));
 }
 
-const std::string kKey = "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 2x8x16x16 to 8x16x16";
+const std::string kKey =
+    "conv_shared.forward 3x3 stride 1 padding 1 dilation 1, 2x8x16x16 float32 to 8x16x16 float32";
 
 TEST(TuningFile, GivesBackWhatWasSaved) {
   const TempFolder folder;

@@ -27,8 +27,7 @@ struct Options {
   BenchmarkOptions benchmark;
   std::optional<Precision> precision;
   std::string by_op;  ///< "shape" or "op"; empty: the short table
-  std::string algorithm;
-  bool winograd = true;
+  WinogradUse winograd = WinogradUse::kWhereFaster;
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
@@ -165,8 +164,7 @@ void run(const Options& options) {
                        .tuned = load_tuned_choices});
   nlohmann::ordered_json out = header(device, options);
   if (options.what == "conv") {
-    const auto timings =
-        benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats, options.algorithm);
+    const auto timings = benchmark_convolutions(device, options.benchmark.batch, options.benchmark.repeats);
     for (const ConvTiming& t : timings)
       out["convolutions"].push_back({{"shape", t.label},
                                      {"transposed", t.shape.transposed},
@@ -231,11 +229,6 @@ void add_bench(CLI::App& app) {
       ->check(CLI::IsMember({"shape", "op"}));
   command->add_option("--profile", options->benchmark.trace,
                       "Write a trace of a step or image, for chrome://tracing or Perfetto");
-  command
-      ->add_option("--algorithm", options->algorithm,
-                   "winograd2 or winograd4: what conv times, on the shapes that it can run (default: the "
-                   "device's choice)")
-      ->check(CLI::IsMember({"winograd2", "winograd4"}));
   add_winograd_option(*command, options->winograd);
   command->add_flag("--json", options->json, "Print JSON");
   add_precision_option(*command, options->precision,

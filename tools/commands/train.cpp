@@ -38,7 +38,7 @@ struct Options {
   std::string profile;
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   bool resume = false;
-  bool winograd = true;
+  WinogradUse winograd = WinogradUse::kWhereFaster;
 };
 
 /// The command line goes before the configuration.

@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "tools/set_option.h"
 #include "train/count_progress.h"
 #include "train/interrupt.h"
@@ -23,6 +24,7 @@ struct Options {
   std::string preset = "full";
   std::vector<std::string> set;
   std::optional<int> batch;
+  std::optional<Precision> precision;
   int repeats = 5;
   bool json = false;
   std::string device;
@@ -34,6 +36,7 @@ std::vector<TuningCase> cases_of(const Config& config, const Options& o, const C
   const Opple model(graph, config.model,
                     {.batch = o.batch.value_or(config.stages().back().batch),
                      .training = true,
+                     .precision = o.precision.value_or(config.training.precision),
                      .max_tensor_bytes = caps.max_tensor_bytes()});
   return tuning_cases(graph, caps);
 }
@@ -48,11 +51,11 @@ nlohmann::ordered_json to_json(const TunedCase& t) {
 }
 
 void print(const std::vector<TunedCase>& all) {
-  fmt::print("{:<92} {:>12} {:>12} {:>8}\n", "product", "default", "chosen", "speed-up");
+  fmt::print("{:<108} {:>12} {:>12} {:>8}\n", "product", "default", "chosen", "speed-up");
   double before = 0;
   double after = 0;
   for (const TunedCase& t : all) {
-    fmt::print("{:<92} {:>12} {:>12} {:>7.2f}x\n", t.key, fmt::format("{}", fmt::join(t.standard, " ")),
+    fmt::print("{:<108} {:>12} {:>12} {:>7.2f}x\n", t.key, fmt::format("{}", fmt::join(t.standard, " ")),
                t.chosen == t.standard ? "" : fmt::format("{}", fmt::join(t.chosen, " ")),
                t.standard_seconds / t.chosen_seconds);
     before += t.standard_seconds;
@@ -111,6 +114,7 @@ void add_tune(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--json", o->json, "Print JSON");
   add_set_option(*command, o->set);
+  add_precision_option(*command, o->precision, "what the configuration says, float32 where it says nothing");
   add_device_option(*command, o->device);
   add_kernels_option(*command, o->kernels);
   command->footer("Example: vkopple tune --preset small --batch 16");

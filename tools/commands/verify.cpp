@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/device.h"
+#include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "train/parity.h"
@@ -16,7 +17,7 @@ struct Options {
   std::string fixture;
   std::string dump;
   bool plain_sums = false;
-  bool winograd = true;
+  WinogradUse winograd = WinogradUse::kWhereFaster;
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
@@ -41,6 +42,10 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
+  const bool forced = options.winograd == WinogradUse::kTiles2 || options.winograd == WinogradUse::kTiles4;
+  if (forced && !options.plain_sums)
+    throw UsageError(
+        "--winograd 2 and 4 go with --plain-sums: convolutions that keep what sums round off are direct");
   const Device device({.selector = options.device,
                        .exact_sums = !options.plain_sums,
                        .winograd = options.winograd,

@@ -29,7 +29,8 @@ struct ConvOperands {
 ///   "window"   the same, and a stretch of an input row serves all columns of the kernel (conv_window.h)
 ///   "uniform"  all lanes load the same address; runs anywhere
 ///   "shared"   a workgroup brings tiles of both operands to shared memory (GPUs; conv_shared.h)
-/// An empty name lets Caps choose.
+///   "cooperative"  subgroups multiply matrices of float16 (GPUs that can; conv_cooperative.h)
+/// An empty name lets Caps and the storage of `in` choose.
 bool is_conv_kernel(std::string_view kernel);
 /// Whether the device can run the family.
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);
@@ -37,7 +38,7 @@ bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);
 /// Bytes of scratch that record_conv_product takes, for packed weights.
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction);
 
-/// What can be tuned, where the family that runs has tiles to choose.
+/// What can be tuned, where the family that runs on float32 operands has tiles to choose.
 std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction,
                                               const Caps& caps);
 

@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "tools/set_option.h"
 #include "train/count_progress.h"
 #include "train/interrupt.h"
@@ -63,6 +64,7 @@ void print(const std::vector<TunedCase>& all) {
 
 void run(const Options& o) {
   const Config config = Config::load(o.preset, o.set);
+  require_kernels_suit(o.kernels, Precision::kFloat32);
   DeviceTiming timing({.selector = o.device, .kernels = o.kernels}, o.repeats);
   const Caps& caps = timing.device().caps();
   const auto file = tuning_file(caps);

@@ -6,6 +6,7 @@
 #include "runtime/device.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "train/parity.h"
 #include "train/safetensors.h"
 
@@ -41,6 +42,7 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
+  require_kernels_suit(options.kernels, Precision::kFloat32);
   const Device device({.selector = options.device,
                        .exact_sums = !options.plain_sums,
                        .winograd = options.winograd,

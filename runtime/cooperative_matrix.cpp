@@ -7,12 +7,13 @@
 namespace vkopple {
 namespace {
 
+bool is_size(uint32_t size) { return std::has_single_bit(size) && size >= 8; }
+
 bool suits(const VkCooperativeMatrixPropertiesKHR& p) {
   return p.AType == VK_COMPONENT_TYPE_FLOAT16_KHR && p.BType == VK_COMPONENT_TYPE_FLOAT16_KHR &&
          p.CType == VK_COMPONENT_TYPE_FLOAT32_KHR && p.ResultType == VK_COMPONENT_TYPE_FLOAT32_KHR &&
-         p.saturatingAccumulation == VK_FALSE && p.scope == VK_SCOPE_SUBGROUP_KHR &&
-         std::has_single_bit(p.MSize) && std::has_single_bit(p.NSize) && std::has_single_bit(p.KSize) &&
-         p.NSize >= 4 && p.KSize >= 8;
+         p.saturatingAccumulation == VK_FALSE && p.scope == VK_SCOPE_SUBGROUP_KHR && is_size(p.MSize) &&
+         is_size(p.NSize) && is_size(p.KSize);
 }
 
 }  // namespace

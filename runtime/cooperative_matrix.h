@@ -34,8 +34,7 @@ class CooperativeFeatures {
 };
 
 /// Of what a device offers, the shapes that kernels take: float16 times float16, added in float32 by a
-/// subgroup, sizes powers of 2, n at least 4 and k at least 8, so that rows are whole vectors of 8 and 16
-/// bytes.
+/// subgroup, sizes powers of 2 from 8 on, so that rows and columns are whole vectors of 16 bytes.
 std::vector<MatrixShape> suitable_shapes(std::span<const VkCooperativeMatrixPropertiesKHR> offered);
 
 /// The suitable shapes of a device that lists CooperativeFeatures::kExtensions; empty where it lacks a feature.

@@ -8,9 +8,6 @@
 namespace vkopple {
 namespace {
 
-/// Below, most of a matrix of 16 would be padding, and the shared family is as fast by estimate.
-constexpr int64_t kFewestChannels = 8;
-
 /// As conv_cooperative_pack.comp has it.
 struct PackPush {
   int32_t out_channels, in_channels, taps;
@@ -52,30 +49,22 @@ void record_pack(Recorder& recorder, const Packed& packed, ConvDirection directi
 CooperativeWork work_of(const ProductPush& push, const Packed& packed) {
   const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
   const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
-  return {.pixels = push.n * rows * columns,
-          .phases = int64_t{push.phases} * push.phases,
-          .out_channels = packed.out,
-          .in_channels = packed.in};
+  return {.rows = push.n * rows * columns,
+          .columns = packed.out,
+          .summed = packed.in,
+          .repeats = int64_t{push.phases} * push.phases};
 }
 
 /// Tiles of one phase in the first two directions, phases in the third.
 Groups groups_of(const CooperativeWork& work, const CooperativeTile& tile, int64_t channel_tiles,
                  const Caps& caps) {
-  const int64_t count = (work.pixels + tile.tile_pixels() - 1) / tile.tile_pixels() * channel_tiles;
+  const int64_t count = (work.rows + tile.tile_rows() - 1) / tile.tile_rows() * channel_tiles;
   const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
   return {static_cast<uint32_t>(x), static_cast<uint32_t>((count + x - 1) / x),
-          static_cast<uint32_t>(work.phases)};
+          static_cast<uint32_t>(work.repeats)};
 }
 
 }  // namespace
-
-bool can_conv_cooperative(const Caps& caps) { return has_cooperative_tile(caps); }
-
-bool prefers_conv_cooperative(const ConvShape& shape, Storage in, const Caps& caps) {
-  if (in != Storage::kFloat16 || caps.exact_sums || !can_conv_cooperative(caps)) return false;
-  if (caps.kernels == KernelFamily::kCooperative) return true;
-  return caps.kernels == KernelFamily::kAuto && !caps.cpu() && std::min(shape.ci, shape.co) >= kFewestChannels;
-}
 
 uint64_t conv_cooperative_scratch(const ConvShape& shape, ConvDirection direction) {
   return Packed(shape, direction).bytes();
@@ -90,9 +79,9 @@ void record_conv_cooperative(Recorder& recorder, const ConvShape& shape, ConvDir
   record_pack(recorder, packed, direction, operands.w, weights);
 
   const CooperativeWork work = work_of(push, packed);
-  const CooperativeTile tile = choose_cooperative_tile(work, caps);
+  const CooperativeTile tile = choose_cooperative_tile(work, CooperativeUse::kProduct, caps);
   push.bias = operands.bias ? static_cast<int32_t>(packed.out) : 0;
-  push.tiles = static_cast<int32_t>((packed.out + tile.tile_channels() - 1) / tile.tile_channels());
+  push.tiles = static_cast<int32_t>((packed.out + tile.tile_columns() - 1) / tile.tile_columns());
   recorder.dispatch("conv_cooperative",
                     {tile.subgroups() * caps.subgroup_size, tile.matrix.m, tile.matrix.n, tile.matrix.k,
                      tile.rows, tile.columns, tile.down, tile.across, tile.depth},

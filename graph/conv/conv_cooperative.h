@@ -9,12 +9,6 @@ namespace vkopple {
 /// Weights are rounded to float16, and `in` too where it is stored as float32; products are exact and added in
 /// float32, in an order and with a rounding of the device's own. Any shape.
 
-bool can_conv_cooperative(const Caps& caps);
-
-/// Whether they are to be taken where nobody names a kernel: for an `in` that is stored as float16, where
-/// Caps::kernels says so or, by itself, on GPUs for channels enough to fill matrices. Never with exact sums.
-bool prefers_conv_cooperative(const ConvShape& shape, Storage in, const Caps& caps);
-
 /// Bytes of scratch, for packed weights.
 uint64_t conv_cooperative_scratch(const ConvShape& shape, ConvDirection direction);
 

@@ -12,6 +12,7 @@
 #include "graph/conv/conv_shared.h"
 #include "graph/conv/conv_tile.h"
 #include "graph/conv/conv_window.h"
+#include "graph/conv/cooperative_tile.h"
 #include "graph/tensor.h"
 #include "runtime/error.h"
 
@@ -156,7 +157,8 @@ std::string_view chosen_kernel(std::string_view kernel, const ConvShape& shape, 
                                Storage in, const Caps& caps) {
   if (kernel.empty()) {
     if (caps.kernels == KernelFamily::kPlain) return kUniform;
-    if (prefers_conv_cooperative(shape, in, caps)) return kCooperative;
+    if (prefers_cooperative(shape, CooperativeUse::kProduct, in == Storage::kFloat16, caps))
+      return kCooperative;
     if (caps.kernels == KernelFamily::kShared || caps.kernels == KernelFamily::kCooperative) return kShared;
     const bool registers = caps.cpu() || caps.kernels == KernelFamily::kRegisters;
     if (registers && prefers_conv_window(shape, direction, caps)) return kWindow;
@@ -219,7 +221,7 @@ bool is_conv_kernel(std::string_view kernel) {
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
   if (kernel == kShuffle) return caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128;
   if (kernel == kShared) return can_conv_shared(caps);
-  if (kernel == kCooperative) return can_conv_cooperative(caps);
+  if (kernel == kCooperative) return can_cooperative(CooperativeUse::kProduct, caps);
   if (kernel == kWindow) return can_conv_window(caps);
   return is_conv_kernel(kernel);
 }

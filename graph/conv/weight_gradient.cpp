@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "graph/conv/weight_gradient_partial.h"
 #include "runtime/error.h"
 
@@ -10,10 +12,15 @@ namespace {
 
 uint32_t u32(int64_t value) { return static_cast<uint32_t>(value); }
 
-WeightGradientKernel choose(const ConvShape& shape, const Caps& caps, WeightGradientKernel wanted) {
+WeightGradientKernel choose(const ConvShape& shape, Storage x, Storage dy, const Caps& caps,
+                            WeightGradientKernel wanted) {
   if (wanted == WeightGradientKernel::kAuto) {
+    const bool float16 = x == Storage::kFloat16 && dy == Storage::kFloat16;
     if (caps.kernels == KernelFamily::kPlain) return WeightGradientKernel::kSimple;
-    if (caps.kernels == KernelFamily::kShared) return WeightGradientKernel::kShared;
+    if (prefers_cooperative(shape, CooperativeUse::kWeightGradient, float16, caps))
+      return WeightGradientKernel::kCooperative;
+    if (caps.kernels == KernelFamily::kShared || caps.kernels == KernelFamily::kCooperative)
+      return WeightGradientKernel::kShared;
     if (can_register(shape, caps)) return WeightGradientKernel::kRegister;
     const bool shared = caps.kernels == KernelFamily::kAuto && !caps.cpu() && can_shared(caps);
     return shared ? WeightGradientKernel::kShared : WeightGradientKernel::kSimple;
@@ -26,6 +33,19 @@ WeightGradientKernel choose(const ConvShape& shape, const Caps& caps, WeightGrad
 
 uint64_t partial_bytes(const ConvShape& shape, const WeightGradientPartial& partial) {
   return static_cast<uint64_t>(partial.strips * strip_vectors(shape)) * 16;
+}
+
+WeightGradientPartial partial_of(WeightGradientKernel kernel, const ConvShape& shape, const Caps& caps) {
+  switch (kernel) {
+    case WeightGradientKernel::kRegister:
+      return plan_register(shape, caps).partial;
+    case WeightGradientKernel::kShared:
+      return plan_shared(shape, caps).partial;
+    case WeightGradientKernel::kCooperative:
+      return plan_cooperative(shape, caps).partial;
+    default:
+      return plan_simple(shape).partial;
+  }
 }
 
 struct SumPush {
@@ -57,22 +77,23 @@ void record_sum(Recorder& recorder, const ConvShape& s, const WeightGradientPart
 
 bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
   if (kernel == WeightGradientKernel::kShared) return can_shared(caps);
+  if (kernel == WeightGradientKernel::kCooperative)
+    return can_cooperative(CooperativeUse::kWeightGradient, caps);
   return kernel != WeightGradientKernel::kRegister || can_register(shape, caps);
 }
 
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
-  switch (choose(shape, caps, kernel)) {
-    case WeightGradientKernel::kRegister:
-      return partial_bytes(shape, plan_register(shape, caps).partial);
-    case WeightGradientKernel::kShared:
-      return partial_bytes(shape, plan_shared(shape, caps).partial);
-    default:
-      return partial_bytes(shape, plan_simple(shape).partial);
-  }
+  uint64_t bytes = 0;
+  for (const Storage storage : {Storage::kFloat32, Storage::kFloat16})
+    bytes = std::max(
+        bytes, partial_bytes(shape, partial_of(choose(shape, storage, storage, caps, kernel), shape, caps)));
+  return bytes;
 }
 
 std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps) {
-  if (choose(shape, caps, WeightGradientKernel::kAuto) != WeightGradientKernel::kShared) return std::nullopt;
+  if (choose(shape, Storage::kFloat32, Storage::kFloat32, caps, WeightGradientKernel::kAuto) !=
+      WeightGradientKernel::kShared)
+    return std::nullopt;
   return shared_tuning(shape, caps);
 }
 
@@ -84,7 +105,7 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
     first_stage(plan, partial);
     record_sum(recorder, shape, plan.partial, partial, dw, accumulate);
   };
-  switch (choose(shape, caps, kernel)) {
+  switch (choose(shape, x.storage, dy.storage, caps, kernel)) {
     case WeightGradientKernel::kRegister:
       return record(plan_register(shape, caps), [&](const RegisterPlan& plan, const Slice& partial) {
         record_register(recorder, plan, x, dy, partial);
@@ -92,6 +113,10 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
     case WeightGradientKernel::kShared:
       return record(plan_shared(shape, caps), [&](const SharedPlan& plan, const Slice& partial) {
         record_shared(recorder, shape, plan, x, dy, partial);
+      });
+    case WeightGradientKernel::kCooperative:
+      return record(plan_cooperative(shape, caps), [&](const CooperativePlan& plan, const Slice& partial) {
+        record_cooperative(recorder, shape, plan, x, dy, partial);
       });
     default:
       return record(plan_simple(shape), [&](const SimplePlan& plan, const Slice& partial) {

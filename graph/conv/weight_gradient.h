@@ -12,20 +12,21 @@ namespace vkopple {
 
 /// The kernels that compute a weight gradient.
 enum class WeightGradientKernel {
-  kAuto,      ///< as Caps::kernels says, by itself the fastest that the device can run
-  kSimple,    ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
-  kShared,    ///< every shape, GPUs: a product of matrices through shared memory
-  kRegister,  ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
+  kAuto,    ///< as Caps::kernels and the storage of x and dy say, by itself the fastest that the device can run
+  kSimple,  ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
+  kShared,  ///< every shape, GPUs: a product of matrices through shared memory
+  kCooperative,  ///< every shape, GPUs that can: subgroups multiply matrices of float16, adding in float32
+  kRegister,     ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
 };
 
 /// Whether the device can run a kernel on this shape.
 bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel);
 
-/// Bytes that record_weight_gradient() needs.
+/// Bytes that record_weight_gradient() needs, however x and dy are stored.
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps,
                                  WeightGradientKernel kernel = WeightGradientKernel::kAuto);
 
-/// What can be tuned, where the kernel that runs has tiles to choose.
+/// What can be tuned, where the kernel that runs on float32 has tiles to choose.
 std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps);
 
 /// dw[co][ci][ky][kx] (+)= Σ n,yo,xo dy[n,co,yo,xo] · x[n, ci, yo·stride + ky·dilation − padding, …], x zero

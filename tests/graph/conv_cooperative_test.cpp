@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
+#include <limits>
 #include <random>
 #include <vector>
 
 #include "graph/conv/conv_product.h"
+#include "graph/conv/weight_gradient.h"
 #include "graph/float16.h"
 #include "graph/tensor.h"
 #include "runtime/device.h"
@@ -37,7 +38,43 @@ Values draw(const TensorSpec& spec, uint32_t seed) {
   return values;
 }
 
-/// A product, its operands and what it should make.
+Slice place(const Device& device, Arena& arena, const TensorSpec& spec, const Values& values) {
+  Slice slice = arena.allocate(spec.bytes());
+  slice.storage = spec.storage;
+  upload_values<float>(device, slice, to_layout(spec, values));
+  return slice;
+}
+
+/// Sums in double precision, with what bounds the error of the same sums in float32.
+class Sums {
+ public:
+  explicit Sums(size_t count) : value_(count, 0.0), size_(count, 0.0), terms_(count, 2.0) {}
+  void add(size_t at, double term) {
+    value_[at] += term;
+    size_[at] += std::abs(term);
+    terms_[at] += 1;
+  }
+  /// Expects every element within the error that a device may make: products of float16 are exact in float32
+  /// (22 digits); each term may then round, or be cut off as matrix units do, by 2^-23 of what has been summed;
+  /// and the result by its storage.
+  void expect(const Values& got, Storage storage) const {
+    const double stored = storage == Storage::kFloat16 ? kFloat16Roundoff : 0.0;
+    ASSERT_EQ(got.size(), value_.size());
+    for (size_t i = 0; i < got.size(); ++i) {
+      const double summed = terms_[i] * std::ldexp(1.0, -23) * size_[i];
+      const double limit = summed + stored * (std::abs(value_[i]) + summed) + std::ldexp(1.0, -25);
+      ASSERT_LE(std::abs(static_cast<double>(got[i]) - value_[i]), limit)
+          << "element " << i << " is " << got[i] << " and should be " << value_[i];
+    }
+  }
+
+ private:
+  std::vector<double> value_, size_, terms_;
+};
+
+double product(float a, float b) { return static_cast<double>(a) * static_cast<double>(b); }
+
+/// A product, its operands and what it should make: operands rounded to float16 are taken as given.
 class Problem {
  public:
   Problem(const Device& device, const ConvShape& s, ConvDirection direction, Storage storage)
@@ -59,10 +96,10 @@ class Problem {
   }
 
   Values run(std::string_view kernel, uint32_t accumulate, bool has_bias = true) {
-    const ConvOperands operands{.in = place(in_spec_, in_),
-                                .w = place(w_spec_, w_),
-                                .bias = has_bias ? place(bias_spec_, bias_) : Slice{},
-                                .out = place(out_spec_, before_),
+    const ConvOperands operands{.in = place(device_, arena_, in_spec_, in_),
+                                .w = place(device_, arena_, w_spec_, w_),
+                                .bias = has_bias ? place(device_, arena_, bias_spec_, bias_) : Slice{},
+                                .out = place(device_, arena_, out_spec_, before_),
                                 .accumulate = accumulate};
     Recorder recorder(device_);
     record_conv_product(recorder, shape_, direction_, operands,
@@ -73,45 +110,23 @@ class Problem {
     return from_layout(out_spec_, words);
   }
 
-  /// Expects every element within the error that the device may make: operands rounded to float16 are taken as
-  /// given, their products are exact in float32 (22 digits), and each of the sum's terms may then round, or be
-  /// cut off as matrix units do, by 2^-23 of what has been summed; and the result by its storage.
   void expect(const Values& got, bool accumulates, bool has_bias = true) const {
-    const size_t count = got.size();
-    std::vector<double> want(count, 0.0), size(count, 0.0), terms(count, 2.0);
+    Sums sums(got.size());
     const Values in = rounded(in_);
     const Values w = rounded(w_);
     const auto plane = static_cast<size_t>(out_spec_.shape[2] * out_spec_.shape[3]);
-    const auto add = [&](size_t at, double term) {
-      want[at] += term;
-      size[at] += std::abs(term);
-      terms[at] += 1;
-    };
-    for (size_t i = 0; i < count; ++i) {
-      if (accumulates) add(i, static_cast<double>(before_[i]));
-      if (has_bias) add(i, static_cast<double>(bias_[i / plane % bias_.size()]));
+    for (size_t i = 0; i < got.size(); ++i) {
+      if (accumulates) sums.add(i, static_cast<double>(before_[i]));
+      if (has_bias) sums.add(i, static_cast<double>(bias_[i / plane % bias_.size()]));
     }
     test::each_product(shape_, [&](size_t x, size_t wi, size_t y) {
       const bool forward = direction_ == ConvDirection::kForward;
-      add(forward ? y : x, static_cast<double>(in[forward ? x : y]) * static_cast<double>(w[wi]));
+      sums.add(forward ? y : x, product(in[forward ? x : y], w[wi]));
     });
-    const double stored = out_spec_.storage == Storage::kFloat16 ? kFloat16Roundoff : 0.0;
-    for (size_t i = 0; i < count; ++i) {
-      const double summed = terms[i] * std::ldexp(1.0, -23) * size[i];
-      const double limit = summed + stored * (std::abs(want[i]) + summed) + std::ldexp(1.0, -25);
-      ASSERT_LE(std::abs(static_cast<double>(got[i]) - want[i]), limit)
-          << "element " << i << " is " << got[i] << " and should be " << want[i];
-    }
+    sums.expect(got, out_spec_.storage);
   }
 
  private:
-  Slice place(const TensorSpec& spec, const Values& values) {
-    Slice slice = arena_.allocate(spec.bytes());
-    slice.storage = spec.storage;
-    upload_values<float>(device_, slice, to_layout(spec, values));
-    return slice;
-  }
-
   void require_zero_padding(const Values& words) const {
     const TensorSpec plain = stored_as(out_spec_, Storage::kFloat32);
     const Values stored = out_spec_.storage == Storage::kFloat16 ? from_float16(words) : words;
@@ -138,17 +153,49 @@ const std::vector<ConvShape>& shapes() {
   return all;
 }
 
+/// The weight gradient, onto NaN and onto what that left.
+void check_gradient(const Device& device, const ConvShape& s, Storage storage) {
+  const TensorSpec x_spec = stored_as(channels4({s.n, s.ci, s.h, s.w}), storage);
+  const TensorSpec dy_spec = stored_as(channels4({s.n, s.co, s.ho, s.wo}), storage);
+  const TensorSpec w_spec = row_major({s.co, s.ci, s.kernel, s.kernel});
+  const auto weights = static_cast<size_t>(w_spec.shape.elements());
+  const Values x = draw(x_spec, 1);
+  const Values dy = draw(dy_spec, 2);
+  Arena arena(device, MemoryKind::kDevice, "conv_cooperative_test");
+  const Slice x_slice = place(device, arena, x_spec, x);
+  const Slice dy_slice = place(device, arena, dy_spec, dy);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Slice dw = place(device, arena, w_spec, Values(weights, nan));
+  const uint64_t bytes = weight_gradient_scratch(s, device.caps(), WeightGradientKernel::kCooperative);
+  const TensorSpec scratch_spec = row_major({static_cast<int64_t>(bytes / 4)});
+  const Slice scratch = place(device, arena, scratch_spec, Values(bytes / 4, nan));
+  Sums sums(weights);
+  for (const uint32_t accumulate : {0U, 1U}) {
+    Recorder recorder(device);
+    record_weight_gradient(recorder, s, x_slice, dy_slice, dw, accumulate, scratch,
+                           WeightGradientKernel::kCooperative);
+    recorder.finish()->run();
+    const Values half_x = rounded(x);
+    const Values half_dy = rounded(dy);
+    test::each_product(s,
+                       [&](size_t xi, size_t wi, size_t y) { sums.add(wi, product(half_x[xi], half_dy[y])); });
+    sums.expect(from_layout(w_spec, download_values<float>(device, dw)), Storage::kFloat32);
+  }
+}
+
 void check_shapes(const Device& device, size_t step) {
   for (const Storage storage : {Storage::kFloat16, Storage::kFloat32})
-    for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed})
-      for (size_t i = 0; i < shapes().size(); i += step) {
-        SCOPED_TRACE(fmt::format("shape {}, {}, float{}", i,
-                                 direction == ConvDirection::kForward ? "forward" : "transposed",
-                                 storage == Storage::kFloat16 ? 16 : 32));
+    for (size_t i = 0; i < shapes().size(); i += step) {
+      SCOPED_TRACE(fmt::format("shape {}, float{}", i, storage == Storage::kFloat16 ? 16 : 32));
+      for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed}) {
+        SCOPED_TRACE(direction == ConvDirection::kForward ? "forward" : "transposed");
         Problem problem(device, shapes()[i], direction, storage);
         problem.expect(problem.run("cooperative", 1), true);
         problem.expect(problem.run("cooperative", 0, false), false, false);
       }
+      SCOPED_TRACE("weight gradient");
+      check_gradient(device, shapes()[i], storage);
+    }
 }
 
 TEST(ConvCooperativeTest, MatchesPlainLoops) {
@@ -161,6 +208,19 @@ TEST(ConvCooperativeTest, MatchesPlainLoopsOnTheOtherAccessPath) {
   if (other_access_device() == nullptr)
     GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
   check_shapes(*other_access_device(), 2);
+}
+
+/// What is float32 is never rounded: the family takes the shared kernels for it, to the bit.
+TEST(ConvCooperativeTest, TheFamilyLeavesFloat32Alone) {
+  const Device* device = family_device(KernelFamily::kCooperative);
+  if (device == nullptr) GTEST_SKIP() << missing();
+  const ConvShape& shape = shapes()[2];
+  for (const Storage storage : {Storage::kFloat32, Storage::kFloat16}) {
+    Problem problem(*device, shape, ConvDirection::kForward, storage);
+    const Values got = problem.run({}, 1);
+    EXPECT_EQ(got == problem.run("shared", 1), storage == Storage::kFloat32);
+    EXPECT_EQ(got == problem.run("cooperative", 1), storage == Storage::kFloat16);
+  }
 }
 
 }  // namespace

@@ -30,13 +30,16 @@ CooperativeFeatures::CooperativeFeatures() {
 
 bool CooperativeFeatures::all() const {
   return matrix_.cooperativeMatrix != VK_FALSE && float16_.shaderFloat16 != VK_FALSE &&
-         memory_model_.vulkanMemoryModel != VK_FALSE && subgroups_.computeFullSubgroups != VK_FALSE;
+         memory_model_.vulkanMemoryModel != VK_FALSE &&
+         memory_model_.vulkanMemoryModelDeviceScope != VK_FALSE && subgroups_.computeFullSubgroups != VK_FALSE;
 }
 
 void CooperativeFeatures::enable() {
   matrix_.cooperativeMatrix = VK_TRUE;
   float16_.shaderFloat16 = VK_TRUE;
   memory_model_.vulkanMemoryModel = VK_TRUE;
+  // With the model on, every shader's atomics need it, those of other memory models too.
+  memory_model_.vulkanMemoryModelDeviceScope = VK_TRUE;
   subgroups_.computeFullSubgroups = VK_TRUE;
 }
 

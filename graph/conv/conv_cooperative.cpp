@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "graph/conv/cooperative_tile.h"
+#include "graph/conv/conv_tuning.h"
 #include "graph/tensor.h"
 
 namespace vkopple {
@@ -79,7 +79,9 @@ void record_conv_cooperative(Recorder& recorder, const ConvShape& shape, ConvDir
   record_pack(recorder, packed, direction, operands.w, weights);
 
   const CooperativeWork work = work_of(push, packed);
-  const CooperativeTile tile = choose_cooperative_tile(work, CooperativeUse::kProduct, caps);
+  const auto kernel = direction == ConvDirection::kForward ? kCooperativeForward : kCooperativeTransposed;
+  const auto tuned = tuned_cooperative_tile(tuning_key(kernel, shape), CooperativeUse::kProduct, caps);
+  const CooperativeTile tile = tuned ? *tuned : choose_cooperative_tile(work, CooperativeUse::kProduct, caps);
   push.bias = operands.bias ? static_cast<int32_t>(packed.out) : 0;
   push.tiles = static_cast<int32_t>((packed.out + tile.tile_columns() - 1) / tile.tile_columns());
   recorder.dispatch("conv_cooperative",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <optional>
 
@@ -13,6 +14,8 @@ namespace {
 /// Sums of an invocation: 64 leave a GPU's multiprocessor room for several workgroups. Not measured: no GPU was
 /// at hand.
 constexpr uint32_t kMostSums = 64;
+/// Matrices or subgroups in a row.
+constexpr uint32_t kMostMatrices = 32;
 /// Below, most of a matrix of 16 would be padding, and the shared family is as fast by estimate.
 constexpr int64_t kFewestChannels = 8;
 /// Summands of a slab: two matrices of the usual 16, so that barriers and addresses are for several products.
@@ -51,16 +54,6 @@ double cost(const CooperativeTile& tile, const CooperativeWork& work, const Caps
   return std::max(static_cast<double>(groups) * invocations, kFill) * slabs * tile.slab() * step;
 }
 
-template <class F>
-void each_tile(CooperativeUse use, const Caps& caps, const F& f) {
-  for (const MatrixShape& matrix : caps.cooperative_matrices)
-    for (const auto& [rows, columns, down, across] : kTiles)
-      for (uint32_t depth = std::max(1U, kSlab / matrix.k); depth > 0; depth /= 2) {
-        const CooperativeTile tile{matrix, rows, columns, down, across, depth};
-        if (fits(tile, use, caps)) f(tile);
-      }
-}
-
 /// Bytes of a row of `numbers` of float16 or float32 in shared memory: an odd number of vectors of 16.
 uint32_t row_bytes(uint32_t numbers, uint32_t number_bytes) { return (numbers * number_bytes / 16 | 1) * 16; }
 
@@ -74,6 +67,11 @@ uint32_t CooperativeTile::shared_bytes(CooperativeUse use) const {
 }
 
 bool fits(const CooperativeTile& tile, CooperativeUse use, const Caps& caps) {
+  const auto& matrices = caps.cooperative_matrices;
+  if (std::find(matrices.begin(), matrices.end(), tile.matrix) == matrices.end()) return false;
+  // Small enough that nothing below overflows.
+  for (const uint32_t count : {tile.rows, tile.columns, tile.down, tile.across, tile.depth})
+    if (!std::has_single_bit(count) || count > kMostMatrices) return false;
   const uint32_t invocations = tile.subgroups() * caps.subgroup_size;
   const uint32_t sums = tile.rows * tile.columns * tile.matrix.m * tile.matrix.n;
   // An invocation of the weight gradient fetches one pixel of a slab.
@@ -82,11 +80,18 @@ bool fits(const CooperativeTile& tile, CooperativeUse use, const Caps& caps) {
          tile.shared_bytes(use) <= caps.shared_memory_bytes && sums <= kMostSums * caps.subgroup_size;
 }
 
-bool can_cooperative(CooperativeUse use, const Caps& caps) {
-  bool any = false;
-  each_tile(use, caps, [&](const CooperativeTile&) { any = true; });
-  return any;
+std::vector<CooperativeTile> cooperative_tiles(CooperativeUse use, const Caps& caps) {
+  std::vector<CooperativeTile> all;
+  for (const MatrixShape& matrix : caps.cooperative_matrices)
+    for (const auto& [rows, columns, down, across] : kTiles)
+      for (uint32_t depth = std::max(1U, kSlab / matrix.k); depth > 0; depth /= 2) {
+        const CooperativeTile tile{matrix, rows, columns, down, across, depth};
+        if (fits(tile, use, caps)) all.push_back(tile);
+      }
+  return all;
 }
+
+bool can_cooperative(CooperativeUse use, const Caps& caps) { return !cooperative_tiles(use, caps).empty(); }
 
 bool prefers_cooperative(const ConvShape& shape, CooperativeUse use, bool float16, const Caps& caps) {
   if (!float16 || caps.exact_sums || !can_cooperative(use, caps)) return false;
@@ -97,12 +102,12 @@ bool prefers_cooperative(const ConvShape& shape, CooperativeUse use, bool float1
 CooperativeTile choose_cooperative_tile(const CooperativeWork& work, CooperativeUse use, const Caps& caps) {
   std::optional<CooperativeTile> best;
   double least = std::numeric_limits<double>::infinity();
-  each_tile(use, caps, [&](const CooperativeTile& tile) {
+  for (const CooperativeTile& tile : cooperative_tiles(use, caps)) {
     const double now = cost(tile, work, caps);
-    if (now >= least) return;
+    if (now >= least) continue;
     best = tile;
     least = now;
-  });
+  }
   if (!best)
     throw Error("no tile of cooperative matrices fits " + caps.name + "; leave the choice to the device");
   return *best;

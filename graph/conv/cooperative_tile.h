@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "graph/conv/conv_shape.h"
 #include "runtime/caps.h"
@@ -33,9 +34,12 @@ struct CooperativeTile {
   bool operator==(const CooperativeTile&) const = default;
 };
 
-/// Whether the device has the invocations, the shared memory and, by estimate, the registers.
+/// Whether the kernel is right for the tile, and the device has its matrix, the invocations, the shared memory
+/// and, by estimate, the registers.
 bool fits(const CooperativeTile& tile, CooperativeUse use, const Caps& caps);
-/// Whether any tile does: whether the device can run the kernel, on any shape.
+/// Tiles worth a try that fit.
+std::vector<CooperativeTile> cooperative_tiles(CooperativeUse use, const Caps& caps);
+/// Whether there is any: whether the device can run the kernel, on any shape.
 bool can_cooperative(CooperativeUse use, const Caps& caps);
 /// Whether the kernel is to be taken where nobody names one. float16: its operands, weights aside, are stored
 /// so. Then it is where Caps::kernels says so and, by itself, on GPUs for channels enough to fill matrices;

@@ -15,9 +15,10 @@ CooperativePlan plan_cooperative(const ConvShape& s, const Caps& caps) {
                              .columns = s.kernel * s.kernel * 4 * blocks4(s.ci),
                              .summed = s.n * s.ho * s.wo,
                              .repeats = kManyStrips};
-  CooperativePlan plan{.tile = choose_cooperative_tile(work, CooperativeUse::kWeightGradient, caps),
-                       .strip_pixels = 0,
-                       .partial = {}};
+  const CooperativeUse use = CooperativeUse::kWeightGradient;
+  const auto tuned = tuned_cooperative_tile(tuning_key(kCooperativeGradient, s), use, caps);
+  CooperativePlan plan{
+      .tile = tuned ? *tuned : choose_cooperative_tile(work, use, caps), .strip_pixels = 0, .partial = {}};
   plan.row_groups = ceil_div(work.rows, plan.tile.tile_rows());
   plan.column_groups = ceil_div(work.columns, plan.tile.tile_columns());
   plan.strip_pixels = strip_of(work.summed, plan.row_groups * plan.column_groups, plan.tile.slab());

@@ -1,14 +1,17 @@
 #include "graph/conv/conv_cooperative.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "graph/conv/conv_product.h"
+#include "graph/conv/conv_tuning.h"
 #include "graph/conv/weight_gradient.h"
 #include "graph/float16.h"
 #include "graph/tensor.h"
@@ -208,6 +211,33 @@ TEST(ConvCooperativeTest, MatchesPlainLoopsOnTheOtherAccessPath) {
   if (other_access_device() == nullptr)
     GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
   check_shapes(*other_access_device(), 2);
+}
+
+/// Small shapes are given small tiles: here every tile has its turn, by way of the tuner's choices.
+TEST(ConvCooperativeTest, EveryTileMatchesPlainLoops) {
+  if (!missing().empty()) GTEST_SKIP() << missing();
+  const auto choices = std::make_shared<TunedChoices>();
+  const Device device({.selector = "",
+                       .on_message = [](const std::string& message) { ADD_FAILURE() << message; },
+                       .kernels = KernelFamily::kCooperative,
+                       .tuned = [&](const Caps&) { return choices; }});
+  const ConvShape shape{2, 20, 9, 11, 40, 9, 11, 3, 1, 1, 1};
+  size_t count = 0;
+  for (const CooperativeTile& tile : cooperative_tiles(CooperativeUse::kProduct, device.caps())) {
+    if (2 * tile.slab() <= 32 && tile.rows * tile.columns > 1) continue;  // as others, but less deep
+    SCOPED_TRACE(fmt::format("tile {}", fmt::join(numbers_of(tile), " ")));
+    for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed}) {
+      const auto kernel = direction == ConvDirection::kForward ? kCooperativeForward : kCooperativeTransposed;
+      (*choices)[tuning_key(kernel, shape)] = numbers_of(tile);
+      Problem problem(device, shape, direction, Storage::kFloat16);
+      problem.expect(problem.run({}, 1), true);
+    }
+    (*choices)[tuning_key(kCooperativeGradient, shape)] = numbers_of(tile);
+    if (fits(tile, CooperativeUse::kWeightGradient, device.caps()))
+      check_gradient(device, shape, Storage::kFloat16);
+    ++count;
+  }
+  EXPECT_GT(count, 8U);
 }
 
 /// What is float32 is never rounded: the family takes the shared kernels for it, to the bit.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "graph/conv/conv_product.h"
+#include "graph/conv/conv_tuning.h"
 #include "graph/conv/weight_gradient.h"
 #include "graph/tensor.h"
 #include "runtime/cooperative_matrix.h"
@@ -105,6 +106,27 @@ TEST(CooperativeTile, ADeviceTooSmallForAMatrixHasNone) {
   EXPECT_TRUE(is_conv_kernel("cooperative"));
   EXPECT_FALSE(can_weight_gradient(kShape, gpu({}), WeightGradientKernel::kCooperative));
   EXPECT_TRUE(can_weight_gradient(kShape, gpu(kUsual), WeightGradientKernel::kCooperative));
+}
+
+TEST(CooperativeTile, WhatTheKernelCannotDoIsRefused) {
+  const Caps caps = gpu(kUsual);
+  const std::string key = tuning_key(kCooperativeForward, kShape);
+  const CooperativeTile good{{16, 16, 16}, 2, 2, 2, 2, 2};
+  EXPECT_TRUE(is_tuned_choice(key, numbers_of(good), caps));
+  EXPECT_FALSE(is_tuned_choice(key, numbers_of(good), gpu({{8, 8, 8}})));
+  EXPECT_FALSE(is_tuned_choice(key, {16, 16, 16, 2, 2, 2, 2}, caps));
+  for (size_t i = 0; i < 8; ++i)
+    for (const uint32_t value : {0U, 3U, 64U, 0x80000000U, 0xFFFFFFFFU}) {
+      auto bad = numbers_of(good);
+      bad[i] = value;
+      EXPECT_FALSE(is_tuned_choice(key, bad, caps)) << i << ": " << value;
+    }
+  for (const CooperativeUse use : kUses)
+    for (const CooperativeTile& tile : cooperative_tiles(use, caps)) EXPECT_TRUE(fits(tile, use, caps));
+  // A slab of more pixels than the workgroup has invocations.
+  const CooperativeTile deep{{16, 16, 16}, 1, 1, 1, 1, 4};
+  EXPECT_TRUE(fits(deep, CooperativeUse::kProduct, caps));
+  EXPECT_FALSE(is_tuned_choice(tuning_key(kCooperativeGradient, kShape), numbers_of(deep), caps));
 }
 
 TEST(KernelFamily, CooperativeMatricesAreForFloat16OnGpus) {

@@ -8,8 +8,9 @@
 
 namespace vkopple {
 
-/// How networks keep what lies between their layers. Everything is computed and summed in float32 either way;
-/// weights, optimiser state, statistics, geometry and losses are kept in float32.
+/// How networks keep what lies between their layers. Everything is computed and summed in float32 either way,
+/// but for GPUs' products of float16 (KernelFamily::kCooperative); weights, optimiser state, statistics,
+/// geometry and losses are kept in float32.
 enum class Precision : uint8_t {
   kFloat32,
   kMixed,  ///< activations and their gradients in float16, the loss scaled in training

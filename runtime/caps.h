@@ -20,10 +20,18 @@ enum class AccessPath {
 /// Kernels by the mechanism that lets invocations share operands. A device of one type runs the others' kernels
 /// too, slower.
 enum class KernelFamily {
-  kAuto,       ///< registers on CPU devices, shared memory on GPUs
+  kAuto,       ///< registers on CPU devices; on GPUs cooperative matrices where they lose nothing, else shared
   kRegisters,  ///< large tiles in registers, operands handed round a subgroup
   kShared,     ///< tiles in shared memory
-  kPlain,      ///< what runs anywhere
+  kCooperative,  ///< cooperative matrices for what is stored as float16, shared memory for the rest
+  kPlain,        ///< what runs anywhere
+};
+
+/// A product of cooperative matrices that a subgroup does at once: m × k by k × n of float16, added to m × n of
+/// float32.
+struct MatrixShape {
+  uint32_t m, n, k;
+  bool operator==(const MatrixShape&) const = default;
 };
 
 /// Where convolutions use Winograd's algorithm, whose rounding grows with its tiles.
@@ -65,6 +73,8 @@ struct Caps {
   bool subgroup_arithmetic = false;
   bool int64 = false;
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
+  std::vector<MatrixShape>
+      cooperative_matrices;  ///< that kernels can use; empty: none, or a feature is missing
   bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
   bool row_stores = false;  ///< kernels of subgroups store lane by lane at uniform addresses (row_store.glsl)

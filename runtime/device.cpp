@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "runtime/cooperative_matrix.h"
 #include "runtime/pipeline.h"
 #include "runtime/vulkan_error.h"
 
@@ -22,6 +23,10 @@ uint32_t compute_family(VkPhysicalDevice device) {
 }  // namespace
 
 std::string missing_for(KernelFamily family, const Caps& caps) {
+  if (family == KernelFamily::kCooperative && caps.cooperative_matrices.empty())
+    return "kernels 'cooperative' can't run on " + caps.name +
+           ": they need VK_KHR_cooperative_matrix with products of float16 added in float32; leave the choice "
+           "to the device";
   if (family != KernelFamily::kRegisters) return {};
   // A workgroup must be one subgroup, and hold the weights of 8 output channels.
   const uint32_t size = caps.subgroup_size;
@@ -88,6 +93,13 @@ void Device::create_logical_device() {
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;
+  CooperativeFeatures cooperative;
+  cooperative.enable();
+  if (!caps_.cooperative_matrices.empty()) {
+    info.pNext = cooperative.chain();
+    info.enabledExtensionCount = static_cast<uint32_t>(CooperativeFeatures::kExtensions.size());
+    info.ppEnabledExtensionNames = CooperativeFeatures::kExtensions.data();
+  }
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (instance_.validates())

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string_view>
 
+#include "runtime/cooperative_matrix.h"
 #include "runtime/instance.h"
 #include "runtime/quirks.h"
 #include "runtime/vulkan_error.h"
@@ -125,7 +126,7 @@ void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& 
 
 }  // namespace
 
-Candidate inspect(VkPhysicalDevice device) {
+Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
   Candidate found;
   VkPhysicalDeviceProperties properties{};
   vkGetPhysicalDeviceProperties(device, &properties);
@@ -144,6 +145,9 @@ Candidate inspect(VkPhysicalDevice device) {
   vkGetPhysicalDeviceFeatures(device, &features);
   found.caps.int64 = features.shaderInt64 != VK_FALSE;
   found.caps.float_atomic_add = has(extensions, VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);
+  const auto& cooperative = CooperativeFeatures::kExtensions;
+  if (std::all_of(cooperative.begin(), cooperative.end(), [&](const char* e) { return has(extensions, e); }))
+    found.caps.cooperative_matrices = query_cooperative_matrices(instance, device);
   const bool texel = found.caps.int64 && found.caps.max_texel_elements >= kLargeTexelBuffer;
   // Texel reads pay on CPU devices; GPUs cache storage buffers just as well.
   found.caps.access = texel && found.caps.cpu() ? AccessPath::kTexel : AccessPath::kStorage;

@@ -101,7 +101,7 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
 
 std::vector<Candidate> Instance::candidates() const {
   std::vector<Candidate> all;
-  for (VkPhysicalDevice device : physical_devices()) all.push_back(inspect(device));
+  for (VkPhysicalDevice device : physical_devices()) all.push_back(inspect(instance_, device));
   return all;
 }
 

@@ -36,7 +36,7 @@ class Instance {
   std::unique_ptr<MessageSink> sink_;
 };
 
-/// What `device` can do and what it lacks.
-Candidate inspect(VkPhysicalDevice device);
+/// What `device`, one of the instance's, can do and what it lacks.
+Candidate inspect(VkInstance instance, VkPhysicalDevice device);
 
 }  // namespace vkopple

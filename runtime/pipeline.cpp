@@ -130,6 +130,9 @@ void PipelineSet::create(Pipeline& pipeline, const Key& key) {
   info.stage.module = module;
   info.stage.pName = "main";
   info.stage.pSpecializationInfo = &specialization;
+  // A cooperative matrix is spread over all of a subgroup's lanes.
+  if (uses_cooperative_matrices(*pipeline.shader))
+    info.stage.flags = VK_PIPELINE_SHADER_STAGE_CREATE_REQUIRE_FULL_SUBGROUPS_BIT;
   info.layout = pipeline.layout;
   const VkResult result =
       vkCreateComputePipelines(device_->handle(), cache_, 1, &info, nullptr, &pipeline.pipeline);

@@ -10,19 +10,23 @@
 namespace vkopple {
 namespace {
 
-/// The few instructions of SPIR-V that tell what a binding is (SPIR-V specification, section 3.42).
+/// The few instructions of SPIR-V that tell what a binding is and what the device needs (SPIR-V specification,
+/// section 3.42).
 struct Reflection {
   static constexpr uint32_t kOpName = 5;
+  static constexpr uint32_t kOpCapability = 17;
   static constexpr uint32_t kOpTypePointer = 32;
   static constexpr uint32_t kOpVariable = 59;
   static constexpr uint32_t kOpDecorate = 71;
   static constexpr uint32_t kDecorationBinding = 33;
+  static constexpr uint32_t kCooperativeMatrixKHR = 6022;
   static constexpr size_t kHeaderWords = 5;
 
   std::map<uint32_t, std::string> names;       ///< by id
   std::map<uint32_t, uint32_t> pointees;       ///< pointer type → type
   std::map<uint32_t, uint32_t> pointer_types;  ///< variable → pointer type
   std::map<uint32_t, uint32_t> variables;      ///< binding number → one of its variables
+  bool cooperative = false;                    ///< declares the capability
 
   explicit Reflection(std::span<const uint32_t> code) {
     for (size_t at = kHeaderWords; at < code.size();) {
@@ -34,6 +38,7 @@ struct Reflection {
   }
 
   void visit(uint32_t opcode, std::span<const uint32_t> operands) {
+    if (opcode == kOpCapability && operands[0] == kCooperativeMatrixKHR) cooperative = true;
     if (opcode == kOpName) names[operands[0]] = reinterpret_cast<const char*>(operands.data() + 1);
     if (opcode == kOpTypePointer) pointees[operands[0]] = operands[2];
     if (opcode == kOpVariable) pointer_types[operands[1]] = operands[0];
@@ -72,6 +77,8 @@ std::vector<BindingKind> binding_kinds(const ShaderCode& shader) {
   }
   return kinds;
 }
+
+bool uses_cooperative_matrices(const ShaderCode& shader) { return Reflection(shader.code).cooperative; }
 
 const ShaderCode& find_shader(std::string_view name, AccessPath access) {
   for (const auto& shader : shader_library())

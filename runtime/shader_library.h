@@ -38,6 +38,9 @@ std::span<const ShaderCode> shader_library();
 /// to names. Throws Error for a binding that no macro declared.
 std::vector<BindingKind> binding_kinds(const ShaderCode& shader);
 
+/// Whether the device must have CooperativeFeatures; the shader's workgroups are made of whole subgroups.
+bool uses_cooperative_matrices(const ShaderCode& shader);
+
 /// Throws Error where there is none of that name.
 const ShaderCode& find_shader(std::string_view name, AccessPath access);
 

@@ -15,20 +15,20 @@ inline void add_device_option(CLI::App& command, std::string& selector) {
       "Vulkan device: auto, cpu, an index, a name or a UUID (default: $VKOPPLE_DEVICE, else auto)");
 }
 
-/// Adds `--kernels auto|registers|shared|plain` to a command. Where the device can't run the family, Device
-/// says so.
+/// Adds `--kernels auto|registers|shared|cooperative|plain` to a command. Where the device can't run the
+/// family, Device says so.
 inline void add_kernels_option(CLI::App& command, KernelFamily& kernels) {
   static const std::map<std::string, KernelFamily> families{{"auto", KernelFamily::kAuto},
                                                             {"registers", KernelFamily::kRegisters},
                                                             {"shared", KernelFamily::kShared},
+                                                            {"cooperative", KernelFamily::kCooperative},
                                                             {"plain", KernelFamily::kPlain}};
   command
       .add_option_function<std::string>(
           "--kernels", [&kernels](const std::string& name) { kernels = families.at(name); },
           "Kernels of convolutions and products: auto (default), registers (CPU devices), shared (shared "
-          "memory, "
-          "for GPUs) or plain (runs anywhere)")
-      ->check(CLI::IsMember({"auto", "registers", "shared", "plain"}));
+          "memory, for GPUs), cooperative (matrix units, for GPUs in mixed precision) or plain (runs anywhere)")
+      ->check(CLI::IsMember({"auto", "registers", "shared", "cooperative", "plain"}));
 }
 
 /// Adds `--winograd auto|never|2|4` to a command, and `--no-winograd` for never.

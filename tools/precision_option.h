@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "models/precision.h"
+#include "runtime/caps.h"
+#include "runtime/error.h"
 
 namespace vkopple {
 
@@ -23,6 +25,14 @@ void add_precision_option(CLI::App& command, T& chosen, const std::string& stand
           "memory (default: " +
               standard + ")")
       ->check(CLI::IsMember(names));
+}
+
+/// Throws UsageError for `--kernels cooperative` in float32, which those kernels never touch.
+inline void require_kernels_suit(KernelFamily kernels, Precision precision) {
+  if (kernels == KernelFamily::kCooperative && precision != Precision::kMixed)
+    throw UsageError(
+        "--kernels cooperative multiplies float16 and goes with --precision mixed of train, infer and bench; "
+        "float32 takes --kernels shared");
 }
 
 }  // namespace vkopple

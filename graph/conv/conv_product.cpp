@@ -7,10 +7,12 @@
 #include <thread>
 #include <vector>
 
+#include "graph/conv/conv_cooperative.h"
 #include "graph/conv/conv_push.h"
 #include "graph/conv/conv_shared.h"
 #include "graph/conv/conv_tile.h"
 #include "graph/conv/conv_window.h"
+#include "graph/conv/cooperative_tile.h"
 #include "graph/tensor.h"
 #include "runtime/error.h"
 
@@ -20,6 +22,7 @@ namespace {
 constexpr std::string_view kShuffle = "shuffle";
 constexpr std::string_view kUniform = "uniform";
 constexpr std::string_view kShared = "shared";
+constexpr std::string_view kCooperative = "cooperative";
 constexpr std::string_view kWindow = "window";
 
 /// As conv_pack.comp has it.
@@ -151,10 +154,12 @@ ProductPush product_push(const ConvShape& s, ConvDirection direction) {
 }
 
 std::string_view chosen_kernel(std::string_view kernel, const ConvShape& shape, ConvDirection direction,
-                               const Caps& caps) {
+                               Storage in, const Caps& caps) {
   if (kernel.empty()) {
     if (caps.kernels == KernelFamily::kPlain) return kUniform;
-    if (caps.kernels == KernelFamily::kShared) return kShared;
+    if (prefers_cooperative(shape, CooperativeUse::kProduct, in == Storage::kFloat16, caps))
+      return kCooperative;
+    if (caps.kernels == KernelFamily::kShared || caps.kernels == KernelFamily::kCooperative) return kShared;
     const bool registers = caps.cpu() || caps.kernels == KernelFamily::kRegisters;
     if (registers && prefers_conv_window(shape, direction, caps)) return kWindow;
     if (registers) return can_run_conv_kernel(kShuffle, caps) ? kShuffle : kUniform;
@@ -210,24 +215,28 @@ Groups groups_of(const ProductPush& push, const ConvTile& tile, int64_t lanes, c
 }  // namespace
 
 bool is_conv_kernel(std::string_view kernel) {
-  return kernel.empty() || kernel == kShuffle || kernel == kUniform || kernel == kShared || kernel == kWindow;
+  return kernel.empty() || kernel == kShuffle || kernel == kUniform || kernel == kShared ||
+         kernel == kCooperative || kernel == kWindow;
 }
 
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps) {
   if (kernel == kShuffle) return caps.subgroup_shuffle && caps.subgroup_size >= 8 && caps.subgroup_size <= 128;
   if (kernel == kShared) return can_conv_shared(caps);
+  if (kernel == kCooperative) return can_cooperative(CooperativeUse::kProduct, caps);
   if (kernel == kWindow) return can_conv_window(caps);
   return is_conv_kernel(kernel);
 }
 
 uint64_t conv_product_scratch(const ConvShape& shape, ConvDirection direction) {
   // Whichever family runs.
-  return std::max(Packing(shape, direction).bytes(), conv_shared_scratch(shape, direction));
+  return std::max({Packing(shape, direction).bytes(), conv_shared_scratch(shape, direction),
+                   conv_cooperative_scratch(shape, direction)});
 }
 
 std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirection direction, const Caps& caps,
                                               ConvStorage storage) {
-  const std::string_view family = chosen_kernel({}, shape, direction, caps);
+  const bool forward = direction == ConvDirection::kForward;
+  const std::string_view family = chosen_kernel({}, shape, direction, forward ? storage.x : storage.y, caps);
   const ProductPush push = product_push(shape, direction);
   if (family == kShared) return conv_shared_tuning(shape, direction, push, caps, storage);
   if (family != kShuffle) return std::nullopt;
@@ -238,9 +247,11 @@ std::optional<ConvTuning> conv_product_tuning(const ConvShape& shape, ConvDirect
 void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirection direction,
                          const ConvOperands& operands, Slice scratch, std::string_view kernel) {
   const Caps& caps = recorder.caps();
-  const std::string_view family = chosen_kernel(kernel, shape, direction, caps);
+  const std::string_view family = chosen_kernel(kernel, shape, direction, operands.in.storage, caps);
   ProductPush push = product_push(shape, direction);
   if (family == kShared) return record_conv_shared(recorder, shape, direction, push, operands, scratch);
+  if (family == kCooperative)
+    return record_conv_cooperative(recorder, shape, direction, push, operands, scratch);
   const Packing packing(shape, direction);
   const Slice packed = scratch.sub(0, packing.bytes());
   packing.record(recorder, operands, packed);

@@ -34,7 +34,8 @@ struct ConvOperands {
 ///   "window"   the same, and a stretch of an input row serves all columns of the kernel (conv_window.h)
 ///   "uniform"  all lanes load the same address; runs anywhere
 ///   "shared"   a workgroup brings tiles of both operands to shared memory (GPUs; conv_shared.h)
-/// An empty name lets Caps choose.
+///   "cooperative"  subgroups multiply matrices of float16 (GPUs that can; conv_cooperative.h)
+/// An empty name lets Caps and the storage of `in` choose.
 bool is_conv_kernel(std::string_view kernel);
 /// Whether the device can run the family.
 bool can_run_conv_kernel(std::string_view kernel, const Caps& caps);

@@ -28,6 +28,13 @@ std::optional<SharedGradientTile> shared_gradient_tile(const Numbers& n, const C
   return fits(tile, caps) ? std::optional(tile) : std::nullopt;
 }
 
+std::optional<CooperativeTile> cooperative_tile(const Numbers& n, CooperativeUse use, const Caps& caps) {
+  if (n.size() != 8) return std::nullopt;
+  const CooperativeTile tile{
+      .matrix = {n[0], n[1], n[2]}, .rows = n[3], .columns = n[4], .down = n[5], .across = n[6], .depth = n[7]};
+  return fits(tile, use, caps) ? std::optional(tile) : std::nullopt;
+}
+
 std::optional<ConvTile> conv_tile(const Numbers& n) {
   const auto is_size = [](uint32_t v) { return v == 1 || v == 2 || v == 4 || v == 8; };
   if (n.size() != 2 || !is_size(n[0]) || !is_size(n[1])) return std::nullopt;
@@ -59,6 +66,10 @@ bool is_tuned_choice(std::string_view key, const Numbers& numbers, const Caps& c
   if (kernel == kShuffleForward || kernel == kShuffleTransposed) return conv_tile(numbers).has_value();
   if (kernel == kSharedForward || kernel == kSharedTransposed) return shared_tile(numbers, caps).has_value();
   if (kernel == kSharedGradient) return shared_gradient_tile(numbers, caps).has_value();
+  if (kernel == kCooperativeForward || kernel == kCooperativeTransposed)
+    return cooperative_tile(numbers, CooperativeUse::kProduct, caps).has_value();
+  if (kernel == kCooperativeGradient)
+    return cooperative_tile(numbers, CooperativeUse::kWeightGradient, caps).has_value();
   return false;
 }
 
@@ -72,6 +83,12 @@ std::optional<SharedGradientTile> tuned_shared_gradient_tile(const std::string& 
   return numbers == nullptr ? std::nullopt : shared_gradient_tile(*numbers, caps);
 }
 
+std::optional<CooperativeTile> tuned_cooperative_tile(const std::string& key, CooperativeUse use,
+                                                      const Caps& caps) {
+  const Numbers* numbers = find(key, caps);
+  return numbers == nullptr ? std::nullopt : cooperative_tile(*numbers, use, caps);
+}
+
 std::optional<ConvTile> tuned_conv_tile(const std::string& key, int64_t out_channels, const Caps& caps) {
   const Numbers* numbers = find(key, caps);
   const auto tile = numbers == nullptr ? std::nullopt : conv_tile(*numbers);
@@ -80,6 +97,9 @@ std::optional<ConvTile> tuned_conv_tile(const std::string& key, int64_t out_chan
 
 Numbers numbers_of(const SharedTile& t) { return {t.out4, t.pixels, t.across, t.down, t.depth}; }
 Numbers numbers_of(const SharedGradientTile& t) { return {t.rows4, t.columns4, t.across, t.down, t.depth}; }
+Numbers numbers_of(const CooperativeTile& t) {
+  return {t.matrix.m, t.matrix.n, t.matrix.k, t.rows, t.columns, t.down, t.across, t.depth};
+}
 Numbers numbers_of(const ConvTile& t) {
   return {static_cast<uint32_t>(t.out4), static_cast<uint32_t>(t.pixels)};
 }

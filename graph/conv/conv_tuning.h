@@ -7,6 +7,7 @@
 
 #include "graph/conv/conv_shape.h"
 #include "graph/conv/conv_tile.h"
+#include "graph/conv/cooperative_tile.h"
 #include "graph/conv/shared_tile.h"
 #include "runtime/storage.h"
 
@@ -25,6 +26,9 @@ constexpr std::string_view kShuffleTransposed = "conv_shuffle.transposed";
 constexpr std::string_view kSharedForward = "conv_shared.forward";
 constexpr std::string_view kSharedTransposed = "conv_shared.transposed";
 constexpr std::string_view kSharedGradient = "weight_gradient_shared";
+constexpr std::string_view kCooperativeForward = "conv_cooperative.forward";
+constexpr std::string_view kCooperativeTransposed = "conv_cooperative.transposed";
+constexpr std::string_view kCooperativeGradient = "weight_gradient_cooperative";
 
 /// How a convolution's x and y, and their gradients with them, are stored; tiles are tuned for each by itself.
 struct ConvStorage {
@@ -41,11 +45,14 @@ bool is_tuned_choice(std::string_view key, const std::vector<uint32_t>& numbers,
 /// The choice of Caps::tuned, if there is one that the device can run.
 std::optional<SharedTile> tuned_shared_tile(const std::string& key, const Caps& caps);
 std::optional<SharedGradientTile> tuned_shared_gradient_tile(const std::string& key, const Caps& caps);
+std::optional<CooperativeTile> tuned_cooperative_tile(const std::string& key, CooperativeUse use,
+                                                      const Caps& caps);
 /// out_channels of the product; not every tile suits few of them.
 std::optional<ConvTile> tuned_conv_tile(const std::string& key, int64_t out_channels, const Caps& caps);
 
 std::vector<uint32_t> numbers_of(const SharedTile& tile);
 std::vector<uint32_t> numbers_of(const SharedGradientTile& tile);
+std::vector<uint32_t> numbers_of(const CooperativeTile& tile);
 std::vector<uint32_t> numbers_of(const ConvTile& tile);
 
 /// Tiles other than `standard` that fit.

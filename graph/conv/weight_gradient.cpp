@@ -12,10 +12,15 @@ namespace {
 
 uint32_t u32(int64_t value) { return static_cast<uint32_t>(value); }
 
-WeightGradientKernel choose(const ConvShape& shape, const Caps& caps, WeightGradientKernel wanted) {
+WeightGradientKernel choose(const ConvShape& shape, Storage x, Storage dy, const Caps& caps,
+                            WeightGradientKernel wanted) {
   if (wanted == WeightGradientKernel::kAuto) {
+    const bool float16 = x == Storage::kFloat16 && dy == Storage::kFloat16;
     if (caps.kernels == KernelFamily::kPlain) return WeightGradientKernel::kSimple;
-    if (caps.kernels == KernelFamily::kShared) return WeightGradientKernel::kShared;
+    if (prefers_cooperative(shape, CooperativeUse::kWeightGradient, float16, caps))
+      return WeightGradientKernel::kCooperative;
+    if (caps.kernels == KernelFamily::kShared || caps.kernels == KernelFamily::kCooperative)
+      return WeightGradientKernel::kShared;
     if (can_register(shape, caps)) return WeightGradientKernel::kRegister;
     const bool shared = caps.kernels == KernelFamily::kAuto && !caps.cpu() && can_shared(caps);
     return shared ? WeightGradientKernel::kShared : WeightGradientKernel::kSimple;
@@ -30,13 +35,19 @@ uint64_t partial_bytes(const ConvShape& shape, const WeightGradientPartial& part
   return static_cast<uint64_t>(partial.strips * strip_vectors(shape)) * 16;
 }
 
-/// Each storage may have a tuned tile, whose sums are cut in another way.
-uint64_t shared_scratch(const ConvShape& shape, const Caps& caps) {
-  uint64_t bytes = 0;
-  for (const Storage x : {Storage::kFloat32, Storage::kFloat16})
-    for (const Storage y : {Storage::kFloat32, Storage::kFloat16})
-      bytes = std::max(bytes, partial_bytes(shape, plan_shared(shape, caps, {x, y}).partial));
-  return bytes;
+/// What a kernel's sums of strips take. Each storage may have a tuned tile, whose sums are cut in another way.
+WeightGradientPartial partial_of(WeightGradientKernel kernel, const ConvShape& shape, const Caps& caps,
+                                 ConvStorage storage) {
+  switch (kernel) {
+    case WeightGradientKernel::kRegister:
+      return plan_register(shape, caps).partial;
+    case WeightGradientKernel::kShared:
+      return plan_shared(shape, caps, storage).partial;
+    case WeightGradientKernel::kCooperative:
+      return plan_cooperative(shape, caps).partial;
+    default:
+      return plan_simple(shape).partial;
+  }
 }
 
 struct SumPush {
@@ -68,23 +79,24 @@ void record_sum(Recorder& recorder, const ConvShape& s, const WeightGradientPart
 
 bool can_weight_gradient(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
   if (kernel == WeightGradientKernel::kShared) return can_shared(caps);
+  if (kernel == WeightGradientKernel::kCooperative)
+    return can_cooperative(CooperativeUse::kWeightGradient, caps);
   return kernel != WeightGradientKernel::kRegister || can_register(shape, caps);
 }
 
 uint64_t weight_gradient_scratch(const ConvShape& shape, const Caps& caps, WeightGradientKernel kernel) {
-  switch (choose(shape, caps, kernel)) {
-    case WeightGradientKernel::kRegister:
-      return partial_bytes(shape, plan_register(shape, caps).partial);
-    case WeightGradientKernel::kShared:
-      return shared_scratch(shape, caps);
-    default:
-      return partial_bytes(shape, plan_simple(shape).partial);
-  }
+  uint64_t bytes = 0;
+  for (const Storage x : {Storage::kFloat32, Storage::kFloat16})
+    for (const Storage y : {Storage::kFloat32, Storage::kFloat16})
+      bytes = std::max(
+          bytes, partial_bytes(shape, partial_of(choose(shape, x, y, caps, kernel), shape, caps, {x, y})));
+  return bytes;
 }
 
 std::optional<ConvTuning> weight_gradient_tuning(const ConvShape& shape, const Caps& caps,
                                                  ConvStorage storage) {
-  if (choose(shape, caps, WeightGradientKernel::kAuto) != WeightGradientKernel::kShared) return std::nullopt;
+  if (choose(shape, storage.x, storage.y, caps, WeightGradientKernel::kAuto) != WeightGradientKernel::kShared)
+    return std::nullopt;
   return shared_tuning(shape, caps, storage);
 }
 
@@ -96,7 +108,7 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
     first_stage(plan, partial);
     record_sum(recorder, shape, plan.partial, partial, dw, accumulate);
   };
-  switch (choose(shape, caps, kernel)) {
+  switch (choose(shape, x.storage, dy.storage, caps, kernel)) {
     case WeightGradientKernel::kRegister:
       return record(plan_register(shape, caps), [&](const RegisterPlan& plan, const Slice& partial) {
         record_register(recorder, plan, x, dy, partial);
@@ -106,6 +118,10 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
                     [&](const SharedPlan& plan, const Slice& partial) {
                       record_shared(recorder, shape, plan, x, dy, partial);
                     });
+    case WeightGradientKernel::kCooperative:
+      return record(plan_cooperative(shape, caps), [&](const CooperativePlan& plan, const Slice& partial) {
+        record_cooperative(recorder, shape, plan, x, dy, partial);
+      });
     default:
       return record(plan_simple(shape), [&](const SimplePlan& plan, const Slice& partial) {
         record_simple(recorder, shape, plan, x, dy, partial);

@@ -12,10 +12,11 @@ namespace vkopple {
 
 /// The kernels that compute a weight gradient.
 enum class WeightGradientKernel {
-  kAuto,      ///< as Caps::kernels says, by itself the fastest that the device can run
-  kSimple,    ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
-  kShared,    ///< every shape, GPUs: a product of matrices through shared memory
-  kRegister,  ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
+  kAuto,    ///< as Caps::kernels and the storage of x and dy say, by itself the fastest that the device can run
+  kSimple,  ///< every shape, every device: pixels over a workgroup's invocations, summed in shared memory
+  kShared,  ///< every shape, GPUs: a product of matrices through shared memory
+  kCooperative,  ///< every shape, GPUs that can: subgroups multiply matrices of float16, adding in float32
+  kRegister,     ///< kernels up to 3x3 on CPU devices: sums in registers, operands handed round a subgroup
 };
 
 /// Whether the device can run a kernel on this shape.

@@ -4,6 +4,7 @@
 
 #include "graph/conv/conv_shape.h"
 #include "graph/conv/conv_tuning.h"
+#include "graph/conv/cooperative_tile.h"
 #include "graph/tensor.h"
 #include "runtime/recorder.h"
 
@@ -51,6 +52,18 @@ RegisterPlan plan_register(const ConvShape& shape, const Caps& caps);
 void record_register(Recorder& recorder, const RegisterPlan& plan, const Slice& x, const Slice& dy,
                      const Slice& partial);
 
+/// How many pixels a strip of the following two kernels has, a multiple of `slab`: few enough to fill a large
+/// GPU where a strip takes `groups` workgroups, and to keep the sums accurate.
+int64_t strip_of(int64_t pixels, int64_t groups, int64_t slab);
+
+/// Their push constants, as both shaders have them.
+struct StripPush {
+  int32_t n, ci4, h, w, co4, ho, wo, kernel, stride, padding, dilation, strip_pixels;
+  int32_t step_rows, step_columns, step_images;
+
+  StripPush(const ConvShape& shape, int64_t pixels, int64_t slab);
+};
+
 /// The first stage of the shared-memory kernel, and how it cuts the sum.
 struct SharedPlan {
   SharedGradientTile tile;
@@ -64,5 +77,17 @@ ConvTuning shared_tuning(const ConvShape& shape, const Caps& caps, ConvStorage s
 SharedPlan plan_shared(const ConvShape& shape, const Caps& caps, ConvStorage storage);
 void record_shared(Recorder& recorder, const ConvShape& shape, const SharedPlan& plan, const Slice& x,
                    const Slice& dy, const Slice& partial);
+
+/// The first stage of the kernel of cooperative matrices, and how it cuts the sum.
+struct CooperativePlan {
+  CooperativeTile tile;
+  int64_t row_groups = 1;
+  int64_t column_groups = 1;
+  int64_t strip_pixels;
+  WeightGradientPartial partial;
+};
+CooperativePlan plan_cooperative(const ConvShape& shape, const Caps& caps);
+void record_cooperative(Recorder& recorder, const ConvShape& shape, const CooperativePlan& plan, const Slice& x,
+                        const Slice& dy, const Slice& partial);
 
 }  // namespace vkopple

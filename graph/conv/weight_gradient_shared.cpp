@@ -13,17 +13,34 @@ constexpr int64_t kMostStrips = 65535;  ///< of any device's third direction
 int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
 int32_t i32(int64_t value) { return static_cast<int32_t>(value); }
 
-/// As weight_gradient_shared.comp has it.
-struct SharedPush {
-  int32_t n, ci4, h, w, co4, ho, wo, kernel, stride, padding, dilation, strip_pixels;
-  int32_t step_rows, step_columns, step_images;
-};
-
 SharedGradientWork work_of(const ConvShape& s) {
   return {.pixels = s.n * s.ho * s.wo, .rows4 = blocks4(s.co), .columns4 = s.kernel * s.kernel * blocks4(s.ci)};
 }
 
 }  // namespace
+
+int64_t strip_of(int64_t pixels, int64_t groups, int64_t slab) {
+  const int64_t wanted = std::min(ceil_div(kWantedGroups, groups), pixels / (kFewestSlabs * slab));
+  const int64_t strips = std::clamp(std::max(wanted, ceil_div(pixels, kLongestSum)), int64_t{1}, kMostStrips);
+  return ceil_div(ceil_div(pixels, strips), slab) * slab;
+}
+
+StripPush::StripPush(const ConvShape& s, int64_t pixels, int64_t slab)
+    : n(i32(s.n)),
+      ci4(i32(blocks4(s.ci))),
+      h(i32(s.h)),
+      w(i32(s.w)),
+      co4(i32(blocks4(s.co))),
+      ho(i32(s.ho)),
+      wo(i32(s.wo)),
+      kernel(i32(s.kernel)),
+      stride(i32(s.stride)),
+      padding(i32(s.padding)),
+      dilation(i32(s.dilation)),
+      strip_pixels(i32(pixels)),
+      step_rows(i32(slab / s.wo % s.ho)),
+      step_columns(i32(slab % s.wo)),
+      step_images(i32(slab / s.wo / s.ho)) {}
 
 bool can_shared(const Caps& caps) {
   const auto tiles = shared_gradient_tiles();
@@ -41,14 +58,9 @@ SharedPlan plan_shared(const ConvShape& s, const Caps& caps, ConvStorage storage
   const auto tuned = tuned_shared_gradient_tile(tuning_key(kSharedGradient, s, storage), caps);
   SharedPlan plan{
       .tile = tuned ? *tuned : choose_shared_gradient_tile(work, caps), .strip_pixels = 0, .partial = {}};
-  const int64_t depth = plan.tile.depth;
   plan.row_groups = ceil_div(work.rows4, plan.tile.tile_rows4());
   plan.column_groups = ceil_div(work.columns4, plan.tile.tile_columns4());
-  const int64_t wanted = std::min(ceil_div(kWantedGroups, plan.row_groups * plan.column_groups),
-                                  work.pixels / (kFewestSlabs * depth));
-  const int64_t strips =
-      std::clamp(std::max(wanted, ceil_div(work.pixels, kLongestSum)), int64_t{1}, kMostStrips);
-  plan.strip_pixels = ceil_div(ceil_div(work.pixels, strips), depth) * depth;
+  plan.strip_pixels = strip_of(work.pixels, plan.row_groups * plan.column_groups, plan.tile.depth);
   plan.partial.strips = ceil_div(work.pixels, plan.strip_pixels);
   plan.partial.many_lanes = true;
   return plan;
@@ -57,25 +69,9 @@ SharedPlan plan_shared(const ConvShape& s, const Caps& caps, ConvStorage storage
 void record_shared(Recorder& recorder, const ConvShape& s, const SharedPlan& plan, const Slice& x,
                    const Slice& dy, const Slice& partial) {
   const SharedGradientTile& tile = plan.tile;
-  const int64_t depth = tile.depth;
-  const SharedPush push{.n = i32(s.n),
-                        .ci4 = i32(blocks4(s.ci)),
-                        .h = i32(s.h),
-                        .w = i32(s.w),
-                        .co4 = i32(blocks4(s.co)),
-                        .ho = i32(s.ho),
-                        .wo = i32(s.wo),
-                        .kernel = i32(s.kernel),
-                        .stride = i32(s.stride),
-                        .padding = i32(s.padding),
-                        .dilation = i32(s.dilation),
-                        .strip_pixels = i32(plan.strip_pixels),
-                        .step_rows = i32(depth / s.wo % s.ho),
-                        .step_columns = i32(depth % s.wo),
-                        .step_images = i32(depth / s.wo / s.ho)};
   recorder.dispatch("weight_gradient_shared",
                     {tile.invocations(), tile.rows4, tile.columns4, tile.across, tile.down, tile.depth},
-                    {x, dy, partial}, push,
+                    {x, dy, partial}, StripPush(s, plan.strip_pixels, tile.depth),
                     {static_cast<uint32_t>(plan.column_groups), static_cast<uint32_t>(plan.row_groups),
                      static_cast<uint32_t>(plan.partial.strips)});
 }

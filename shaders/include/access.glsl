@@ -80,6 +80,15 @@ layout(constant_id = 100) const bool kZeroOutside = false;
 #define load1_or_zero(name, inside, i) ((inside) ? name[i] : 0.0)
 #endif
 
+// The same as words of float16 (float16.glsl), for kernels that compute with them: as they lie where the operand holds float16, else
+// rounded.
+#ifdef TEXEL
+#define words4(name, i) float16_words(load4(name, i))
+#else
+#define words4(name, i) (name##_is_float16 ? name##_float16[i] : float16_words(name[i]))
+#endif
+#define words4_or_zero(name, inside, i) ((inside) ? words4(name, i) : uvec2(0))
+
 // Gradients: `accumulate` 0 overwrites without reading what is there, 1 adds to it.
 #define add4(name, i, v, accumulate) \
   { vec4 new_ = v; if ((accumulate) != 0u) new_ += stored4(name, i); store4(name, i, new_) }

@@ -67,10 +67,13 @@ void run_family(const Device& device, KernelFamily family) {
       const auto forced = [&](std::string_view name) { return c.label.ends_with(name); };
       return forced(" winograd2") || forced(" winograd4") ||
              (family != KernelFamily::kRegisters && forced(" shuffle")) ||
-             (family != KernelFamily::kShared && forced(" shared")) ||
+             (family != KernelFamily::kShared && family != KernelFamily::kCooperative && forced(" shared")) ||
              (family != KernelFamily::kPlain && forced(" uniform"));
     });
     run_all(device, checks);
+    // Rounding weights to float16 as well as results stays within the limits for results alone: neither adds to
+    // an error by more than 1 / sqrt(3) of a unit round-off, root mean square.
+    if (family == KernelFamily::kCooperative) run_all(device, checks, Storage::kFloat16);
   }
 }
 
@@ -89,7 +92,7 @@ TEST(SharedFamilyTest, MatchesItsReferencesOnTheOtherAccessPath) {
 
 INSTANTIATE_TEST_SUITE_P(Families, KernelFamilyTest,
                          testing::Values(KernelFamily::kRegisters, KernelFamily::kShared,
-                                         KernelFamily::kPlain));
+                                         KernelFamily::kCooperative, KernelFamily::kPlain));
 
 std::string test_name(const testing::TestParamInfo<OpChecks>& test) { return std::string(test.param.op); }
 

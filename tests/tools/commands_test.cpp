@@ -62,6 +62,21 @@ TEST(Commands, ADeviceThatIsNotThereIsNamed) {
   expect_failure(run_vkopple({"gradcheck", "sigmoid", "--device", "no such device"}), 2, {"no such device"});
 }
 
+TEST(Commands, CooperativeMatricesAreRefusedToFloat32) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{"train", "tiny", "--data", "rooms:1", "--out", "not-made"},
+                                             {"gradcheck", "sigmoid"},
+                                             {"bench", "conv"},
+                                             {"verify", "not-read"},
+                                             {"tune", "--preset", "tiny"}}) {
+    SCOPED_TRACE(command.front());
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--kernels", "cooperative"});
+    expect_failure(run_vkopple(arguments), 2, {"--kernels cooperative", "--precision mixed"});
+    EXPECT_FALSE(std::filesystem::exists("not-made"));
+  }
+}
+
 TEST(Commands, ResultsThatCannotBeWrittenAreAFailure) {
   const test::FileSizeLimit limit(16);
   EXPECT_EQ(run_vkopple({"devices", "--json"}).code, 1);

@@ -42,6 +42,8 @@ Config config_in(Precision precision) {
 // yardstick. Limits are twice that for gradients at one point, and rounded up to twice the yardstick for means
 // over many steps.
 constexpr double kGradientLimit = 2.8;
+// Kernels of cooperative matrices also round weights, by 1 / sqrt(3) of the yardstick.
+constexpr double kCooperativeGradientLimit = 3.0;
 constexpr double kCurveLimit = 2;
 
 /// Moves every value by 2^-11 of itself, up or down.
@@ -118,14 +120,15 @@ Triplets smooth_triplets(const ModelConfig& model, int64_t batch) {
 }
 
 /// The loss and every network's gradient at the start.
-std::map<std::string, std::vector<double>> gradients(Precision precision, float scale, bool move = false) {
+std::map<std::string, std::vector<double>> gradients(Precision precision, float scale, bool move = false,
+                                                     const Device& device = test_device()) {
   constexpr int64_t kBatch = 3;
   Config config = tiny_config();
   config.model.height = config.model.width = 32;
   Graph graph;
   const Opple model(graph, config.model, {.batch = kBatch, .training = false, .precision = precision});
   const Value seed = graph.input("scale", row_major({1}));
-  Executor executor(test_device(), graph,
+  Executor executor(device, graph,
                     {.groups = {}, .loss = model.loss(), .trained = model.groups(), .loss_scale = seed});
   for (const InitialTensor& t : model.tensors()) {
     const auto values = initial_values(t.initial, t.value.shape().elements(), kSeed, t.name);
@@ -156,19 +159,33 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
   return std::sqrt(difference2 / size2);
 }
 
+using Gradients = std::map<std::string, std::vector<double>>;
+
+void expect_near(const Gradients& mixed, const Gradients& single, const Gradients& yardstick, double times) {
+  for (const auto& [what, values] : single) {
+    const double limit = times * relative_difference(values, yardstick.at(what));
+    EXPECT_LE(relative_difference(values, mixed.at(what)), limit) << what;
+    EXPECT_GT(relative_difference(values, mixed.at(what)), 0) << what;
+    EXPECT_LT(limit, 0.5) << what << ": nothing would be compared";
+    std::cout << what << ": " << relative_difference(values, mixed.at(what)) << ", limit " << limit << "\n";
+  }
+}
+
 TEST(MixedTraining, GradientsAreThoseOfFloat32) {
   const auto single = gradients(Precision::kFloat32, 1);
   // A power of two changes nothing in float32.
   EXPECT_EQ(gradients(Precision::kFloat32, 256), single);
   const auto mixed = gradients(Precision::kMixed, 256);
   const auto yardstick = gradients(Precision::kFloat32, 1, true);
-  for (const auto& [what, values] : single) {
-    const double limit = kGradientLimit * relative_difference(values, yardstick.at(what));
-    EXPECT_LE(relative_difference(values, mixed.at(what)), limit) << what;
-    EXPECT_GT(relative_difference(values, mixed.at(what)), 0) << what;
-    EXPECT_LT(limit, 0.5) << what << ": nothing would be compared";
-    std::cout << what << ": " << relative_difference(values, mixed.at(what)) << ", limit " << limit << "\n";
+  expect_near(mixed, single, yardstick, kGradientLimit);
+  const Device* cooperative = family_device(KernelFamily::kCooperative);
+  if (cooperative == nullptr) {
+    std::cout << missing_for(KernelFamily::kCooperative, test_device().caps()) << "\n";
+    return;
   }
+  const auto matrices = gradients(Precision::kMixed, 256, false, *cooperative);
+  EXPECT_NE(matrices, mixed);
+  expect_near(matrices, single, yardstick, kCooperativeGradientLimit);
 }
 
 TEST(MixedTraining, FollowsTheLossOfFloat32) {

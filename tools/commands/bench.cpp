@@ -158,6 +158,8 @@ void run(const Options& options) {
   if (options.what != "conv" && options.benchmark.batch < 1) throw UsageError("--batch must be at least 1");
   Config config = Config::load(options.preset, options.set);
   if (options.precision) config.training.precision = *options.precision;
+  require_kernels_suit(options.kernels,
+                       options.what == "conv" ? Precision::kFloat32 : config.training.precision);
   const Device device({.selector = options.device,
                        .winograd = options.winograd,
                        .kernels = options.kernels,

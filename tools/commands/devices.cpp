@@ -28,6 +28,14 @@ std::string_view type_name(DeviceType type) {
   return "other";
 }
 
+/// "16x16x16" for m × n × k.
+std::vector<std::string> matrix_texts(const Caps& caps) {
+  std::vector<std::string> texts;
+  for (const MatrixShape& s : caps.cooperative_matrices)
+    texts.push_back(fmt::format("{}x{}x{}", s.m, s.n, s.k));
+  return texts;
+}
+
 nlohmann::ordered_json to_json(size_t index, const Candidate& candidate) {
   const Caps& c = candidate.caps;
   return {{"index", index},
@@ -39,6 +47,7 @@ nlohmann::ordered_json to_json(size_t index, const Candidate& candidate) {
           {"max_storage_range", c.max_storage_range},
           {"max_texel_elements", c.max_texel_elements},
           {"subgroup_size", c.subgroup_size},
+          {"cooperative_matrices", matrix_texts(c)},
           {"access", c.access == AccessPath::kTexel ? "texel" : "storage"},
           {"missing", candidate.missing}};
 }
@@ -53,6 +62,8 @@ void print_table(const std::vector<Candidate>& candidates) {
                candidates[i].missing.empty()
                    ? ""
                    : fmt::format("; can't be used: lacks {}", fmt::join(candidates[i].missing, ", ")));
+    if (!c.cooperative_matrices.empty())
+      fmt::print("{:>5}  cooperative matrices {}\n", "", fmt::join(matrix_texts(c), ", "));
   }
 }
 

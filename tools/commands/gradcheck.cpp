@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 
 namespace vkopple {
 namespace {
@@ -96,6 +97,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
 }
 
 void run(const Options& options) {
+  require_kernels_suit(options.kernels, Precision::kFloat32);
   const auto checks = chosen_checks(options);
   const Device device({.selector = options.device, .kernels = options.kernels});
   nlohmann::ordered_json out{{"ops", nlohmann::ordered_json::array()}};

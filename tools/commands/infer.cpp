@@ -132,6 +132,7 @@ std::optional<RgbImage> try_to_read(const std::string& path, CountProgress& prog
 }
 
 void run(const Options& o) {
+  require_kernels_suit(o.kernels, o.precision);
   const Device device({.selector = o.device, .kernels = o.kernels, .tuned = load_tuned_choices});
   const LoadedModel model = load_model(device, o.model);
   Inference inference(o, device, model);

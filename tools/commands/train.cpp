@@ -95,6 +95,7 @@ void run(const Options& o) {
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
+  require_kernels_suit(o.kernels, request.config.training.precision);
   const Device device(
       {.selector = o.device, .winograd = o.winograd, .kernels = o.kernels, .tuned = load_tuned_choices});
   const Interrupt interrupt;

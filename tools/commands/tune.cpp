@@ -66,6 +66,7 @@ void print(const std::vector<TunedCase>& all) {
 
 void run(const Options& o) {
   const Config config = Config::load(o.preset, o.set);
+  require_kernels_suit(o.kernels, Precision::kFloat32);
   DeviceTiming timing({.selector = o.device, .kernels = o.kernels}, o.repeats);
   const Caps& caps = timing.device().caps();
   const auto file = tuning_file(caps);

@@ -7,6 +7,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/precision_option.h"
 #include "train/parity.h"
 #include "train/safetensors.h"
 
@@ -42,6 +43,7 @@ void print(const ParityReport& report) {
 }
 
 void run(const Options& options) {
+  require_kernels_suit(options.kernels, Precision::kFloat32);
   const bool forced = options.winograd == WinogradUse::kTiles2 || options.winograd == WinogradUse::kTiles4;
   if (forced && !options.plain_sums)
     throw UsageError(

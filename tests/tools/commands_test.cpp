@@ -77,6 +77,13 @@ TEST(Commands, CooperativeMatricesAreRefusedToFloat32) {
   }
 }
 
+TEST(Commands, WinogradIsForcedWithPlainSumsAlone) {
+  expect_failure(run_vkopple({"verify", "fixture", "--winograd", "2"}), 2, {"--plain-sums"});
+  expect_failure(run_vkopple({"verify", "fixture", "--winograd", "3"}), 2, {"--winograd"});
+  expect_failure(run_vkopple({"train", "tiny", "--out", "run", "--winograd", "2", "--no-winograd"}), 2,
+                 {"--winograd", "--no-winograd"});
+}
+
 TEST(Commands, ResultsThatCannotBeWrittenAreAFailure) {
   const test::FileSizeLimit limit(16);
   EXPECT_EQ(run_vkopple({"devices", "--json"}).code, 1);

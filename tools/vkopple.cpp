@@ -11,7 +11,6 @@
 #include <string>
 
 #include "runtime/error.h"
-#include "runtime/wide_vectors.h"
 #include "tools/commands.h"
 
 namespace {
@@ -63,7 +62,6 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  vkopple::prefer_wide_vectors();
   // Results go to standard output; what is said about them to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("vkopple"));
   spdlog::set_pattern("vkopple: %l: %v");

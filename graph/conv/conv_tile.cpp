@@ -58,7 +58,7 @@ ConvTile choose_uniform_tile(const ConvWork& work) {
 bool row_stores_pay(int64_t iterations, int64_t vectors, const Caps& caps) {
   // With 3x3 kernels: up to 16 input channels.
   constexpr int64_t kShortSum = 36;
-  constexpr int64_t kMostVectors = 512;  // of a subgroup; twice as many take seconds to compile
+  constexpr int64_t kMostVectors = 256;  // of a subgroup; twice as many take a second to compile
   return caps.row_stores && iterations <= kShortSum && vectors * caps.subgroup_size <= kMostVectors;
 }
 

@@ -65,6 +65,8 @@ struct Plan {
 void choose_product_tile(Plan& plan, int64_t all_tiles, int64_t frequencies, bool row_stores) {
   plan.product_cost = std::numeric_limits<double>::infinity();
   for (const ProductTile& tile : kTiles) {
+    // For wide subgroups larger tiles gain nothing, and take the driver two seconds to compile.
+    if (plan.lanes >= 16 && tile.out4 * tile.tiles > 32) continue;
     const int64_t groups =
         frequencies * ceil_div(blocks4(plan.out), tile.out4) * ceil_div(all_tiles, plan.lanes * tile.tiles);
     const double cost = tile_cost(tile, blocks4(plan.in), plan.lanes, row_stores) * static_cast<double>(groups);
@@ -122,8 +124,9 @@ void record_winograd_product(Recorder& recorder, const ConvShape& shape, ConvDir
 
   const int64_t local = recorder.caps().row_stores ? plan.lanes : recorder.caps().flat_workgroup();
   recorder.dispatch(chunks.made == 4 ? "winograd_weights.f4" : "winograd_weights.f2",
-                    {u32(local), direction == ConvDirection::kTransposed ? 1U : 0U}, {operands.w, weights},
-                    WeightPush{i32(plan.out), i32(plan.in), i32(plan.weight_vectors())},
+                    {u32(local), direction == ConvDirection::kTransposed ? 1U : 0U,
+                     plan.weight_vectors() % local == 0 ? 1U : 0U},
+                    {operands.w, weights}, WeightPush{i32(plan.out), i32(plan.in), i32(plan.weight_vectors())},
                     {u32(ceil_div(plan.weight_vectors(), local)), 1, 1});
   const bool whole = plan.out_h % chunks.made == 0 && plan.out_w % chunks.made == 0;
   for (int64_t first = 0; first < chunks.blocks(); first += chunks.chunk_blocks) {

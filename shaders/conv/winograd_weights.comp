@@ -10,6 +10,7 @@
 // channels of what the product makes and reads. Zero beyond the channels. w is (out, in, 3, 3); or, for the transposed product,
 // (in, out, 3, 3), whose taps run backwards. One invocation makes all frequencies of 1 output and 4 input channels.
 layout(constant_id = 1) const bool kTransposed = false;
+layout(constant_id = 2) const bool kWholeRows = false;  // p.vectors is a multiple of a subgroup's lanes
 
 layout(push_constant) uniform Push {
   int out_channels;
@@ -54,7 +55,9 @@ void main() {
     [[unroll]] for (int y = 0; y < kRead; ++y) {
       int from = (y * kRead + x) * p.vectors;
 #ifdef TEXEL
-      if (kRowStores)
+      if (kRowStores && kWholeRows)
+        store4_row(transformed, true, from + row, column[y])
+      else if (kRowStores)
         store4_row_below(transformed, from + p.vectors, from + row, column[y])
       else
 #endif

@@ -7,6 +7,7 @@
 
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -160,6 +161,7 @@ void run(const Options& options) {
   if (options.precision) config.training.precision = *options.precision;
   require_kernels_suit(options.kernels,
                        options.what == "conv" ? Precision::kFloat32 : config.training.precision);
+  if (options.what != "infer") prefer_wide_vectors();
   const Device device({.selector = options.device,
                        .winograd = options.winograd,
                        .kernels = options.kernels,

@@ -8,6 +8,7 @@
 #include "models/model_check.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -99,6 +100,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
 void run(const Options& options) {
   require_kernels_suit(options.kernels, Precision::kFloat32);
   const auto checks = chosen_checks(options);
+  prefer_wide_vectors();
   const Device device({.selector = options.device, .kernels = options.kernels});
   nlohmann::ordered_json out{{"ops", nlohmann::ordered_json::array()}};
   bool failed = false;

@@ -8,6 +8,7 @@
 #include "models/config.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -96,6 +97,7 @@ void run(const Options& o) {
   trainer_options.profiled_steps = o.profiled_steps;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
   require_kernels_suit(o.kernels, request.config.training.precision);
+  prefer_wide_vectors();
   const Device device(
       {.selector = o.device, .winograd = o.winograd, .kernels = o.kernels, .tuned = load_tuned_choices});
   const Interrupt interrupt;

@@ -8,6 +8,7 @@
 #include "models/config.h"
 #include "models/opple.h"
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -67,6 +68,7 @@ void print(const std::vector<TunedCase>& all) {
 void run(const Options& o) {
   const Config config = Config::load(o.preset, o.set);
   require_kernels_suit(o.kernels, Precision::kFloat32);
+  prefer_wide_vectors();  // as train does
   DeviceTiming timing({.selector = o.device, .kernels = o.kernels}, o.repeats);
   const Caps& caps = timing.device().caps();
   const auto file = tuning_file(caps);

@@ -5,6 +5,7 @@
 
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -48,6 +49,7 @@ void run(const Options& options) {
   if (forced && !options.plain_sums)
     throw UsageError(
         "--winograd 2 and 4 go with --plain-sums: convolutions that keep what sums round off are direct");
+  prefer_wide_vectors();
   const Device device({.selector = options.device,
                        .exact_sums = !options.plain_sums,
                        .winograd = options.winograd,

@@ -20,7 +20,7 @@
 layout(constant_id = 103) const bool kRowStores = false;
 const int kNowhere = 0x07ffff00;
 #define ALIGN_SPILLS(name) \
-  if (kRowStores) name[kNowhere + int(gl_LocalInvocationID.x)] = u64vec2(0);
+  { if (kRowStores) name[kNowhere + int(gl_LocalInvocationID.x)] = u64vec2(0); }
 #define ROW_DIGITS layout(offset = 96) int octal[8];
 #define octal_digit(x, d) (p.octal[((x) >> (3 * (d))) & 7] << (3 * (d)))
 #define octal_digits2(x) (octal_digit(x, 0) | octal_digit(x, 1))
@@ -38,25 +38,29 @@ const int kMostLanes = 16;
 #define LANE_LOW(words, lane) packUint2x32(uvec2(from_lane(words.x, lane), from_lane(words.y, lane)))
 #define LANE_HIGH(words, lane) packUint2x32(uvec2(from_lane(words.z, lane), from_lane(words.w, lane)))
 // Stores the words of one lane to an address that is known to be uniform.
-#define STORE_LANE(name, inside, at, words, lane)                                          \
-  if (lane < int(kSubgroupSize)) {                                                         \
-    int to_ = (inside) ? (at) : kNowhere;                                                  \
-    if (name##_is_float16)                                                                 \
-      name##_float16[to_] = LANE_LOW(words, lane);                                         \
-    else                                                                                   \
-      name[to_] = u64vec2(LANE_LOW(words, lane), LANE_HIGH(words, lane));                  \
+#define STORE_LANE(name, inside, at, words, lane)                                      \
+  {                                                                                    \
+    if (lane < int(kSubgroupSize)) {                                                   \
+      int to_ = (inside) ? (at) : kNowhere;                                            \
+      if (name##_is_float16)                                                           \
+        name##_float16[to_] = LANE_LOW(words, lane);                                   \
+      else                                                                             \
+        name[to_] = u64vec2(LANE_LOW(words, lane), LANE_HIGH(words, lane));            \
+    }                                                                                  \
   }
 // Likewise two vectors that follow one another, from an even element on.
-#define STORE_LANES(name, inside, at, words_a, lane_a, words_b, lane_b)                                            \
-  if (lane_a < int(kSubgroupSize)) {                                                                               \
-    if (name##_is_float16) {                                                                                       \
-      STORE_LANE(name, inside, at, words_a, lane_a)                                                                \
-      STORE_LANE(name, inside, (at) + 1, words_b, lane_b)                                                          \
-    } else {                                                                                                       \
-      int to_ = ((inside) ? (at) : kNowhere) >> 1;                                                                 \
-      name##_pairs[to_] = u64vec4(LANE_LOW(words_a, lane_a), LANE_HIGH(words_a, lane_a), LANE_LOW(words_b, lane_b), \
-                                  LANE_HIGH(words_b, lane_b));                                                     \
-    }                                                                                                              \
+#define STORE_LANES(name, inside, at, words_a, lane_a, words_b, lane_b)                                                \
+  {                                                                                                                    \
+    if (lane_a < int(kSubgroupSize)) {                                                                                 \
+      if (name##_is_float16) {                                                                                         \
+        STORE_LANE(name, inside, at, words_a, lane_a)                                                                  \
+        STORE_LANE(name, inside, (at) + 1, words_b, lane_b)                                                            \
+      } else {                                                                                                         \
+        int to_ = ((inside) ? (at) : kNowhere) >> 1;                                                                   \
+        name##_pairs[to_] = u64vec4(LANE_LOW(words_a, lane_a), LANE_HIGH(words_a, lane_a), LANE_LOW(words_b, lane_b),  \
+                                    LANE_HIGH(words_b, lane_b));                                                       \
+      }                                                                                                                \
+    }                                                                                                                  \
   }
 // y[base + lane] = v as far as that is below `limit`, which is even; kRowStores must hold.
 #define store4_row_below(name, limit, base, v)                                                            \
@@ -66,13 +70,15 @@ const int kMostLanes = 16;
       STORE_LANES(name, (base) + lane_ < (limit), (base) + lane_, words_, lane_, words_, lane_ + 1)       \
   }
 #define store4_row(name, inside, base, v)                                                                 \
-  if (kRowStores) {                                                                                       \
-    uvec4 words_ = ROW_WORDS(name, v);                                                                    \
-    int row_at_ = (inside) ? (base) : kNowhere;                                                           \
-    [[unroll]] for (int lane_ = 0; lane_ < kMostLanes; lane_ += 2)                                        \
-      STORE_LANES(name, true, row_at_ + lane_, words_, lane_, words_, lane_ + 1)                          \
-  } else if (inside) {                                                                                    \
-    store4(name, (base) + int(gl_LocalInvocationID.x), v)                                                 \
+  {                                                                                                       \
+    if (kRowStores) {                                                                                     \
+      uvec4 words_ = ROW_WORDS(name, v);                                                                  \
+      int row_at_ = (inside) ? (base) : kNowhere;                                                         \
+      [[unroll]] for (int lane_ = 0; lane_ < kMostLanes; lane_ += 2)                                      \
+        STORE_LANES(name, true, row_at_ + lane_, words_, lane_, words_, lane_ + 1)                        \
+    } else if (inside) {                                                                                  \
+      store4(name, (base) + int(gl_LocalInvocationID.x), v)                                               \
+    }                                                                                                     \
   }
 #else
 const bool kRowStores = false;
@@ -83,5 +89,5 @@ const bool kRowStores = false;
 #define known_uniform6(x) (x)
 #define known_uniform8(x) (x)
 #define store4_row(name, inside, base, v) \
-  if (inside) store4(name, (base) + int(gl_LocalInvocationID.x), v)
+  { if (inside) store4(name, (base) + int(gl_LocalInvocationID.x), v) }
 #endif

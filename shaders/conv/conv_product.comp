@@ -180,7 +180,7 @@ void store_sums(int a, int b, int out_block) {
 void store_rows(int out_block) {
   int size = p.out_h * p.out_w;
   int first_image = known_uniform6(image[0]);
-  int first_pixel = known_uniform6(row[0] * p.out_w + column[0] - int(gl_LocalInvocationID.x));
+  int first_pixel = known_uniform8(row[0] * p.out_w + column[0] - int(gl_LocalInvocationID.x));
   int first_block = known_uniform4(out_block);
   [[unroll]] for (int r = 0; r < kPixels; ++r) {
     int pixel = first_pixel + r * int(gl_WorkGroupSize.x);

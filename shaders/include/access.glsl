@@ -10,7 +10,9 @@
 //
 // With TEXEL, reads are texel fetches and vec4 stores two 64-bit ones (each measured far faster on lavapipe); without,
 // everything is a storage buffer. load4_or_zero(x, inside, i) gives zeros where `inside` is false.
-// One operand must not be bound for reading and for writing in one dispatch; use stored4 on the written binding instead.
+// One operand must not be bound for reading and for writing in one dispatch; use stored4 on the written binding instead. Kernels that
+// store rows (row_store.glsl) are the exception: they add to what a READ4 of the same tensor holds, each lane reading its elements
+// before anything writes them.
 // The suffixes that the macros give to names (_r4, _r1, _ru, _w4, _w) tell the runtime what each binding is.
 //
 // What READ4 and WRITE4 declare may hold float16 (8 bytes an element) as well as float32: load4, store4, stored4 and add4 give and

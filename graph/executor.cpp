@@ -400,6 +400,14 @@ void Executor::write_words(Value value, std::span<const uint32_t> values) {
   upload_values<uint32_t>(*device_, slice(value), values);
 }
 
+void Executor::write_end(Value value, const Slice& from) {
+  require_host_access(value, "write");
+  const Slice all = slice(value);
+  if (from.bytes > all.bytes)
+    throw Error(fmt::format("{} bytes were given for a tensor of {}", from.bytes, all.bytes));
+  copy(*device_, from, all.sub(all.bytes - from.bytes, from.bytes));
+}
+
 std::vector<float> Executor::read(Value value) const {
   require_host_access(value, "read");
   return from_layout(value.spec(), download_values<float>(*device_, slice(value)));

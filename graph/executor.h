@@ -59,6 +59,9 @@ class Executor {
   /// wrong count.
   void write(Value value, std::span<const float> values);
   void write_words(Value value, std::span<const uint32_t> values);
+  /// Copies from elsewhere in the device's memory, in the value's layout, over the last bytes of a value.
+  /// Throws Error where there are more of them than the value has.
+  void write_end(Value value, const Slice& from);
   /// Row-major values of an input, a kept value, or a group's member.
   std::vector<float> read(Value value) const;
   std::vector<uint32_t> read_words(Value value) const;

@@ -208,12 +208,23 @@ std::vector<std::string> Opple::groups() const {
   return names;
 }
 
+void Opple::feed_images(Executor& executor, const Triplets& triplets) const {
+  if (!triplets.drawn) {
+    executor.write(images_, triplets.images);
+    return;
+  }
+  const uint64_t frame = sizeof(float) * static_cast<uint64_t>(images_.shape().elements()) / kFrames;
+  if (triplets.drawn.bytes != frame * static_cast<uint64_t>(kFrames - first_frame()))
+    throw Error(fmt::format("{} bytes of images were drawn for frames of {}", triplets.drawn.bytes, frame));
+  executor.write_end(images_, triplets.drawn);
+}
+
 void Opple::feed(Executor& executor, const Triplets& triplets) const {
   const auto b = static_cast<size_t>(options_.batch);
   if (triplets.poses.size() != 3 * b)
     throw Error(fmt::format("{} camera poses were given for a batch of {}; three each are needed",
                             triplets.poses.size(), b));
-  executor.write(images_, triplets.images);
+  feed_images(executor, triplets);
   std::vector<float> m12;
   std::vector<float> m23;
   std::vector<float> ego23;

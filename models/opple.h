@@ -15,9 +15,10 @@
 
 namespace vkopple {
 
-/// A batch of triplets for the model, on the host.
+/// A batch of triplets for the model.
 struct Triplets {
   std::vector<float> images;          ///< 3 × (B, 3, H, W) in [0, 1]
+  Slice drawn;                        ///< instead of `images`, on the device: of frames first_frame() to 2
   std::vector<CameraPose> poses;      ///< 3 × B
   std::vector<uint32_t> permutation;  ///< (B), pairs scenes for the collapse term
 };
@@ -48,6 +49,8 @@ class Opple {
   std::vector<std::string> groups() const;
 
   Value images() const { return images_; }
+  /// The first of frames 0 to 2 whose images matter.
+  int first_frame() const { return options_.background_only ? 1 : 0; }
   /// Writes images, camera motion and permutation. Throws Error on sizes that don't fit.
   void feed(Executor& executor, const Triplets& triplets) const;
   /// Writes what stays: the pose resampling matrices. Once, after the executor is made.
@@ -57,6 +60,7 @@ class Opple {
 
  private:
   void declare_inputs();
+  void feed_images(Executor& executor, const Triplets& triplets) const;
   void build_background_only();
   void build_all();
   std::vector<bool> seen_fully() const;

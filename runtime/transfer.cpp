@@ -16,13 +16,13 @@ void require_fit(const Slice& slice, size_t bytes) {
   if (bytes > slice.bytes) throw Error("a transfer is larger than the buffer it goes to or comes from");
 }
 
-void run_copy(const Device& device, const Slice& from, const Slice& to) {
+}  // namespace
+
+void copy(const Device& device, const Slice& from, const Slice& to) {
   Recorder recorder(device);
   recorder.copy(from, to);
   recorder.finish()->run();
 }
-
-}  // namespace
 
 void upload(const Device& device, const Slice& to, std::span<const std::byte> data) {
   require_fit(to, data.size());
@@ -35,7 +35,7 @@ void upload(const Device& device, const Slice& to, std::span<const std::byte> da
   for (uint64_t at = 0; at < data.size(); at += kStagingBytes) {
     const uint64_t part = std::min<uint64_t>(kStagingBytes, data.size() - at);
     std::memcpy(staging.mapped(), data.data() + at, part);
-    run_copy(device, {&staging, 0, part}, to.sub(at, part));
+    copy(device, {&staging, 0, part}, to.sub(at, part));
   }
 }
 
@@ -49,7 +49,7 @@ void download(const Device& device, const Slice& from, std::span<std::byte> data
   Buffer staging(device, std::min<uint64_t>(data.size(), kStagingBytes), MemoryKind::kHost, "staging");
   for (uint64_t at = 0; at < data.size(); at += kStagingBytes) {
     const uint64_t part = std::min<uint64_t>(kStagingBytes, data.size() - at);
-    run_copy(device, from.sub(at, part), {&staging, 0, part});
+    copy(device, from.sub(at, part), {&staging, 0, part});
     std::memcpy(data.data() + at, staging.mapped(), part);
   }
 }

@@ -14,6 +14,8 @@ class Device;
 /// Both wait for the copy's end; the caller has no commands under way that use the slice.
 void upload(const Device& device, const Slice& to, std::span<const std::byte> data);
 void download(const Device& device, const Slice& from, std::span<std::byte> data);
+/// Within the device's memory, likewise. Throws Error where the slices have different sizes or storage.
+void copy(const Device& device, const Slice& from, const Slice& to);
 
 template <class T>
 void upload_values(const Device& device, const Slice& to, std::span<const T> values) {

@@ -32,6 +32,7 @@ std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch)
 
 Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permutation) {
   Triplets triplets;
+  triplets.drawn = batch.drawn;
   for (size_t frame = 0; frame < 3; ++frame) {
     triplets.images.insert(triplets.images.end(), batch.images[frame].begin(), batch.images[frame].end());
     const std::vector<float>& numbers = batch.poses[frame];
@@ -45,12 +46,10 @@ Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permuta
   return triplets;
 }
 
-Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, double reverse_probability) {
-  TripletBatch batch = source.read(step);
-  const auto reversed = reversed_triplets(seed, step, batch.batch, reverse_probability);
-  for (int i = 0; i < batch.batch; ++i)
-    if (reversed[static_cast<size_t>(i)]) batch.reverse(i);
-  return model_triplets(batch, scene_permutation(seed, step, batch.batch));
+Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, int batch,
+                           double reverse_probability, int first_frame) {
+  const auto reversed = reversed_triplets(seed, step, batch, reverse_probability);
+  return model_triplets(source.show(step, reversed, first_frame), scene_permutation(seed, step, batch));
 }
 
 }  // namespace vkopple

@@ -19,7 +19,9 @@ std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch)
 /// A batch as the model takes it.
 Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permutation);
 
-/// What step `step` of training shows.
-Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, double reverse_probability);
+/// What step `step` of training shows in a batch of `batch` to a model that looks at the images from
+/// `first_frame` on.
+Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, int batch,
+                           double reverse_probability, int first_frame = 0);
 
 }  // namespace vkopple

@@ -16,7 +16,8 @@ struct StepRecord {
   std::string stage;
   int batch = 0;
   Losses losses;
-  double seconds = 0;             ///< that it took
+  double data_seconds = 0;        ///< until its batch was there: drawn or read
+  double seconds = 0;             ///< that it took, those included
   std::optional<double> depth_r;  ///< correlation with true depth in unseen rooms, where it was measured
 };
 

@@ -106,9 +106,10 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   Triplets triplets;
   {
     const Trace::Span span(trace, "data");
-    triplets = training_triplets(*stage.source, position_.seed, step, config_.training.reverse_probability);
+    triplets = training_triplets(*stage.source, position_.seed, step, s.batch,
+                                 config_.training.reverse_probability, stage.training->model().first_frame());
   }
-  StepRecord record{.stage = s.name, .batch = s.batch};
+  StepRecord record{.stage = s.name, .batch = s.batch, .data_seconds = seconds_since(start)};
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
   store_.count_step(s.hypotheses == Hypotheses::kBackground);

@@ -44,8 +44,11 @@ TrainingLog::TrainingLog(std::filesystem::path path, uint64_t step) : path_(std:
 }
 
 void TrainingLog::add(const StepRecord& record) {
-  nlohmann::ordered_json json{
-      {"step", record.step}, {"stage", record.stage}, {"losses", record.losses}, {"seconds", record.seconds}};
+  nlohmann::ordered_json json{{"step", record.step},
+                              {"stage", record.stage},
+                              {"losses", record.losses},
+                              {"seconds", record.seconds},
+                              {"data_seconds", record.data_seconds}};
   if (record.depth_r) json["depth_r"] = *record.depth_r;
   file_ << json.dump() << '\n' << std::flush;
   if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));

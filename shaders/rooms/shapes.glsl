@@ -1,6 +1,5 @@
 // Where a ray first meets a solid, in the solid's own frame: its middle at the origin, z along its axis.
 //
-// One formula serves all solids but the torus, since on CPU devices a wave pays for every branch that the code has, taken or not.
 // A solid is the part of the slab |z| <= h where, with x' = x / a, y' = y / b and the size of the section s(z) = s0 + s1 z,
 //   round:    x'^2 + y'^2 + e (z - c)^2 <= s(z)^2
 //   polygon:  n_i . (x', y') <= s(z) for the outward normals n_i of a regular triangle or square
@@ -102,23 +101,40 @@ Entry hit_torus(Solid solid, vec3 o, vec3 d) {
   return Entry(inside && t > 0.0 ? t : kMiss, p - scale * vec3(p.x, 0, p.z));
 }
 
-// o: the ray's origin, outside the solid; d: its direction, a unit vector.
+void clip_caps(Solid solid, vec3 o, vec3 d, inout Entry near, inout float far) {
+  clip(solid.h - o.z, d.z, vec3(0, 0, 1), near, far);
+  clip(solid.h + o.z, -d.z, vec3(0, 0, -1), near, far);
+}
+
+Entry entered(Entry near, float far) {
+  if (near.t >= far || near.t <= 0.0) near.t = kMiss;
+  return near;
+}
+
+// Of a round solid and of a polygonal one. The ray, whose d may have any length, is in the frame where a = b = 1, the normal in
+// the solid's.
+Entry hit_round(Solid solid, vec3 o, vec3 d) {
+  Entry near = Entry(0.0, vec3(0));
+  float far = kMiss;
+  clip_caps(solid, o, d, near, far);
+  clip_round(solid, o, d, near, far);
+  return entered(near, far);
+}
+
+Entry hit_polygon(Solid solid, vec3 o, vec3 d) {
+  Entry near = Entry(0.0, vec3(0));
+  float far = kMiss;
+  clip_caps(solid, o, d, near, far);
+  clip_polygon(solid, o, d, near, far);
+  return entered(near, far);
+}
+
+// Of any. o: the ray's origin, outside the solid; d: its direction, a unit vector.
 Entry hit_solid(Solid solid, vec3 o, vec3 d) {
   Entry torus = hit_torus(solid, o, d);
-  if (solid.kind == kTorus) return torus;
   vec3 po = o / vec3(solid.a, solid.b, 1), pd = d / vec3(solid.a, solid.b, 1);
-  Entry round = Entry(0.0, vec3(0));
-  float far = kMiss;
-  clip(solid.h - o.z, d.z, vec3(0, 0, 1), round, far);
-  clip(solid.h + o.z, -d.z, vec3(0, 0, -1), round, far);
-  Entry polygon = round;
-  float polygon_far = far;
-  clip_round(solid, po, pd, round, far);
-  clip_polygon(solid, po, pd, polygon, polygon_far);
-  if (solid.kind != kRound) {
-    round = polygon;
-    far = polygon_far;
-  }
-  if (round.t >= far || round.t <= 0.0) round.t = kMiss;
-  return round;
+  Entry round = hit_round(solid, po, pd), polygon = hit_polygon(solid, po, pd);
+  if (solid.kind == kTorus) return torus;
+  if (solid.kind == kRound) return round;
+  return polygon;
 }

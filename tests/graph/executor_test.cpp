@@ -13,6 +13,8 @@
 #include "graph/ops/relayout.h"
 #include "graph/ops/slice.h"
 #include "runtime/error.h"
+#include "runtime/transfer.h"
+#include "tests/support/expect_error.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -52,6 +54,21 @@ TEST(ExecutorTest, SharedGroupsSeeEachOther) {
   first.write(w1, std::vector<float>{1, 2, -10});
   second.forward();
   EXPECT_EQ(second.read(y2), (std::vector<float>{1, 2, -1}));
+}
+
+TEST(ExecutorTest, TheEndOfAValueMayComeFromTheDevice) {
+  Graph graph;
+  const Value x = graph.input("x", row_major({4})), y = leaky_relu(x, 1.0F);
+  graph.keep("y", y);
+  Executor executor(test_device(), graph);
+  executor.write(x, std::vector<float>{1, 2, 3, 4});
+  Buffer other(test_device(), 20, MemoryKind::kDevice, "other");
+  const Slice all = other.whole();
+  upload_values<float>(test_device(), all, std::vector<float>{5, 6, 7, 8, 9});
+  executor.write_end(x, all.sub(4, 8));
+  executor.forward();
+  EXPECT_EQ(executor.read(y), (std::vector<float>{1, 2, 6, 7}));
+  test::expect_error([&] { executor.write_end(x, all); }, {"20 bytes", "16"});
 }
 
 TEST(ExecutorTest, SaysWhatIsWrong) {

@@ -68,7 +68,9 @@ class Training {
   }
 
   std::map<std::string, double> step() {
-    const auto triplets = training_triplets(*source_, kSeed, next_, config_.training.reverse_probability);
+    const auto triplets =
+        training_triplets(*source_, kSeed, next_, stage_.batch, config_.training.reverse_probability,
+                          training_.model().first_frame());
     return training_.run(triplets, kSeed, next_++);
   }
   void move_weights() {

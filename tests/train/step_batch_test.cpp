@@ -52,7 +52,7 @@ TEST(StepBatch, PermutationsAreEveryOneAndAllDiffer) {
 
 TEST(StepBatch, FramesFollowOneAnother) {
   NumberedTriplets source(2);
-  const Triplets t = training_triplets(source, 1, 3, 0);
+  const Triplets t = training_triplets(source, 1, 3, 2, 0);
   const std::vector<float> images{300, 300, 300, 310, 310, 310, 301, 301, 301,
                                   311, 311, 311, 302, 302, 302, 312, 312, 312};
   EXPECT_EQ(t.images, images);
@@ -62,7 +62,7 @@ TEST(StepBatch, FramesFollowOneAnother) {
 
 TEST(StepBatch, AReversedTripletIsReversedInImagesAndPoses) {
   NumberedTriplets source(1);
-  const Triplets there = training_triplets(source, 1, 0, 0), back = training_triplets(source, 1, 0, 1);
+  const Triplets there = training_triplets(source, 1, 0, 1, 0), back = training_triplets(source, 1, 0, 1, 1);
   EXPECT_EQ(back.images, (std::vector<float>{2, 2, 2, 1, 1, 1, 0, 0, 0}));
   EXPECT_EQ(there.images, (std::vector<float>{0, 0, 0, 1, 1, 1, 2, 2, 2}));
   EXPECT_EQ(there.poses[2], (CameraPose{2, 2, 2, 2, 2, 2}));

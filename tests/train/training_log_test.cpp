@@ -15,8 +15,12 @@ namespace {
 using test::TempFolder;
 
 StepRecord record(uint64_t step) {
-  return {
-      .step = step, .stage = "depth", .batch = 4, .losses = {{"image", 0.5}, {"total", 0.25}}, .seconds = 2};
+  return {.step = step,
+          .stage = "depth",
+          .batch = 4,
+          .losses = {{"image", 0.5}, {"total", 0.25}},
+          .data_seconds = 0.5,
+          .seconds = 2};
 }
 
 std::vector<nlohmann::json> lines(const std::filesystem::path& path) {
@@ -36,8 +40,10 @@ TEST(TrainingLog, OneObjectAStep) {
   log.add(measured);
   const auto all = lines(folder / "log.jsonl");
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_EQ(all[0], nlohmann::json::parse(
-                        R"({"step":1,"stage":"depth","losses":{"image":0.5,"total":0.25},"seconds":2.0})"));
+  EXPECT_EQ(
+      all[0],
+      nlohmann::json::parse(
+          R"({"step":1,"stage":"depth","losses":{"image":0.5,"total":0.25},"seconds":2.0,"data_seconds":0.5})"));
   EXPECT_EQ(all[1].at("depth_r"), 0.75);
 }
 

@@ -22,6 +22,13 @@ void TripletBatch::reverse(int index) {
   exchange(poses[0], poses[2], element, 6);
 }
 
+TripletBatch TripletSource::show(uint64_t step, const std::vector<bool>& reversed, int /*first_frame*/) {
+  TripletBatch batch = read(step);
+  for (int i = 0; i < batch.batch; ++i)
+    if (reversed.at(static_cast<std::size_t>(i))) batch.reverse(i);
+  return batch;
+}
+
 std::vector<std::array<int, 3>> strided_triplets(int frames) {
   std::vector<std::array<int, 3>> triplets;
   for (int stride = 1; 2 * stride < frames; ++stride) {

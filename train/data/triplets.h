@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/buffer.h"
+
 namespace vkopple {
 
 /// Where an object truly is in a triplet's middle frame.
@@ -13,11 +15,12 @@ struct ObjectTruth {
   uint64_t pixels = 0;               ///< that show it, by their centres; 0: out of sight
 };
 
-/// A batch of triplets of frames, on the host. Truth is known of made data only; what is unknown is empty.
+/// A batch of triplets of frames. Truth is known of made data only; what is unknown is empty.
 struct TripletBatch {
   int batch = 0, height = 0, width = 0;
   std::array<std::vector<float>, 3>
-      images;  ///< a frame each: (batch, 3, height, width) red, green, blue in [0, 1]
+      images;   ///< a frame each: (batch, 3, height, width) red, green, blue in [0, 1]
+  Slice drawn;  ///< where images were left on the device, which `images` lacks then: a frame behind the other
   std::array<std::vector<float>, 3>
       poses;                    ///< a frame each: (batch, 6) x, y, z, yaw, pitch, roll of the camera
   std::vector<float> depth;     ///< (batch, height, width) of the middle frame, Euclidean; empty where unknown
@@ -33,6 +36,10 @@ class TripletSource {
  public:
   virtual ~TripletSource() = default;
   virtual TripletBatch read(uint64_t step) = 0;
+  /// The same batch as training takes it: triplet i backwards in time where `reversed[i]`, truth and the images
+  /// of frames before `first_frame` only by chance. What is drawn may be left on the device, valid until the
+  /// next call: frames `first_frame` to 2.
+  virtual TripletBatch show(uint64_t step, const std::vector<bool>& reversed, int first_frame);
   /// How many triplets there are before they come again; nothing where they never do.
   virtual std::optional<uint64_t> size() const { return std::nullopt; }
 };

@@ -42,7 +42,7 @@ class Drawn {
           views.begin() + static_cast<std::ptrdiff_t>(std::min(first + group_size, views.size())));
       group.resize(group_size, group.back());
       renderer.render(group);
-      append(images_, renderer.planes(renderer.image()));
+      append(images_, download_values<float>(renderer.device(), renderer.image()));
       append(depths_, download_values<float>(renderer.device(), renderer.depth()));
       append(labels_, download_values<uint32_t>(renderer.device(), renderer.label()));
     }

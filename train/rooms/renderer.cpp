@@ -12,16 +12,20 @@
 namespace vkopple {
 namespace {
 
-/// As the shader's block.
-struct RaycastPush {
+/// As the shaders' block.
+struct RoomsPush {
   int32_t views, height, width;
   int32_t view_rows;
   float focal;
 };
 
-/// Bytes of `views` pictures of 4 floats; throws Error where a shader can't reach so many.
+// Pixels of a column that one invocation draws, 32 at most. Many share the cost of the kinds of pixels that
+// none of them is of; few make more invocations.
+constexpr uint32_t kLinesOnCpu = 32, kLinesOnGpu = 8;
+
+/// Bytes of `views` pictures of 3 floats; throws Error where a shader can't reach so many.
 uint64_t image_bytes(const Device& device, const Lens& lens, int views) {
-  const uint64_t bytes = lens.pixels() * static_cast<uint64_t>(views) * 4 * sizeof(float),
+  const uint64_t bytes = lens.pixels() * static_cast<uint64_t>(views) * 3 * sizeof(float),
                  most = device.caps().max_storage_range;
   if (bytes <= most) return bytes;
   throw Error(
@@ -53,20 +57,28 @@ double Lens::focal() const { return height / (2 * std::tan(fov / 2)); }
 
 double Lens::half_view() const { return std::atan(width / (2 * focal())); }
 
-RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views)
+RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views,
+                           Truth truth)
     : device_(&device),
       lens_(lens),
       objects_(static_cast<std::size_t>(rooms.objects)),
       views_(views),
       scene_(device, scene_bytes(objects_, views), MemoryKind::kDevice, "rooms scene"),
-      image_(device, image_bytes(device, lens, views), MemoryKind::kDevice, "rooms image"),
-      depth_(device, pixels() * sizeof(float), MemoryKind::kDevice, "rooms depth"),
-      label_(device, pixels() * sizeof(uint32_t), MemoryKind::kDevice, "rooms label") {
+      image_(device, image_bytes(device, lens, views), MemoryKind::kDevice, "rooms image") {
+  const RoomsPush push{views, lens.height, lens.width, static_cast<int32_t>(packed_view_size(objects_) / 4),
+                       static_cast<float>(lens.focal())};
+  const uint32_t lines = device.caps().cpu() ? kLinesOnCpu : kLinesOnGpu;
+  const uint64_t strips = (static_cast<uint64_t>(lens.height) + lines - 1) / lines;
   Recorder recorder(device);
-  const RaycastPush push{views, lens.height, lens.width, static_cast<int32_t>(packed_view_size(objects_) / 4),
-                         static_cast<float>(lens.focal())};
-  recorder.dispatch_flat("room_raycast", pixels(), {scene_.whole(), image(), depth(), label()}, push,
-                         {static_cast<uint32_t>(rooms.supersample), textures_constant(rooms.textures)});
+  recorder.dispatch_flat("room_image",
+                         strips * static_cast<uint64_t>(views) * static_cast<uint64_t>(lens.width),
+                         {scene_.whole(), image()}, push,
+                         {static_cast<uint32_t>(rooms.supersample), textures_constant(rooms.textures), lines});
+  if (truth == Truth::kDrawn) {
+    depth_.emplace(device, pixels() * sizeof(float), MemoryKind::kDevice, "rooms depth");
+    label_.emplace(device, pixels() * sizeof(uint32_t), MemoryKind::kDevice, "rooms label");
+    recorder.dispatch_flat("room_truth", pixels(), {scene_.whole(), depth(), label()}, push);
+  }
   commands_ = recorder.finish();
 }
 
@@ -85,18 +97,6 @@ void RoomRenderer::render(const std::vector<View>& views) {
   }
   upload_values<float>(*device_, scene_.whole(), packed);
   commands_->run();
-}
-
-std::vector<float> RoomRenderer::planes(const Slice& range) const {
-  const std::vector<float> pixels = download_values<float>(*device_, range);
-  const std::size_t area = lens_.pixels(), views = pixels.size() / (4 * area);
-  std::vector<float> result(views * 3 * area);
-  for (std::size_t view = 0; view < views; ++view) {
-    for (std::size_t i = 0; i < area; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) result[(view * 3 + c) * area + i] = pixels[(view * area + i) * 4 + c];
-    }
-  }
-  return result;
 }
 
 }  // namespace vkopple

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "models/model_config.h"
@@ -37,23 +38,23 @@ struct View {
 /// number of times.
 class RoomRenderer {
  public:
+  enum class Truth { kDrawn, kLeftOut };
+
   /// Every scene drawn must have as many objects as `rooms`, and textures as it has them. Throws Error where
   /// the device's memory is too small.
-  RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views);
+  RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views,
+               Truth truth = Truth::kDrawn);
 
   /// Draws `views`, as many as this was made for, and waits.
   void render(const std::vector<View>& views);
 
-  /// (views, height, width) pixels of 4 floats: red, green, blue in [0, 1], 0. As a tensor: (views, 3, height,
-  /// width) in NC4HW4.
+  /// (views, 3, height, width) floats: red, green and blue in [0, 1].
   Slice image() { return image_.whole(); }
-  /// (views, height, width) floats: Euclidean distance along the ray through the pixel's centre.
-  Slice depth() { return depth_.whole(); }
-  /// (views, height, width) uint32: 0 background, i + 1 object i, at the pixel's centre.
-  Slice label() { return label_.whole(); }
-
-  /// Downloads a range of image() that holds whole views, as (views, 3, height, width).
-  std::vector<float> planes(const Slice& range) const;
+  /// (views, height, width) floats: Euclidean distance along the ray through the pixel's centre. Truth must be
+  /// drawn.
+  Slice depth() { return depth_.value().whole(); }
+  /// (views, height, width) uint32: 0 background, i + 1 object i, at the pixel's centre. Truth must be drawn.
+  Slice label() { return label_.value().whole(); }
 
   const Device& device() const { return *device_; }
   const Lens& lens() const { return lens_; }
@@ -66,7 +67,8 @@ class RoomRenderer {
   Lens lens_;
   std::size_t objects_;
   int views_;
-  Buffer scene_, image_, depth_, label_;
+  Buffer scene_, image_;
+  std::optional<Buffer> depth_, label_;
   std::unique_ptr<Commands> commands_;
 };
 

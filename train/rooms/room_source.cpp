@@ -1,5 +1,8 @@
 #include "train/rooms/room_source.h"
 
+#include <span>
+#include <utility>
+
 #include "runtime/device.h"
 #include "runtime/transfer.h"
 #include "train/random.h"
@@ -9,81 +12,87 @@ namespace {
 
 // Scenes take the streams from 0 on, the choice of their frames those from here on.
 constexpr uint64_t kChoiceStreams = uint64_t{1} << 63;
+constexpr int kFrames = 3;
+
+/// One of equal parts.
+Slice part(const Slice& whole, int index, int count) {
+  const uint64_t bytes = whole.bytes / static_cast<uint64_t>(count);
+  return whole.sub(bytes * static_cast<uint64_t>(index), bytes);
+}
+
+/// `label`: of the frame, at the pixels' centres.
+std::vector<ObjectTruth> truth_of(const Scene& scene, int frame, std::span<const uint32_t> label) {
+  std::vector<ObjectTruth> objects;
+  for (const RoomObject& object : scene.objects)
+    objects.push_back({scene.cameras[static_cast<std::size_t>(frame)].see(object.position(frame)), 0});
+  for (const uint32_t id : label)
+    if (id > 0) ++objects[id - 1].pixels;
+  return objects;
+}
 
 }  // namespace
 
 RoomSource::RoomSource(const Device& device, const Lens& lens, const RoomsConfig& rooms, int batch,
                        uint64_t seed)
-    : rooms_(rooms),
+    : device_(&device),
+      lens_(lens),
+      rooms_(rooms),
       batch_(batch),
       seed_(seed),
-      renderer_(device, lens, rooms, 3 * batch),
       choices_(strided_triplets(rooms.frames)) {}
 
-void RoomSource::render(uint64_t step) {
-  scenes_.clear();
-  frames_.clear();
+std::vector<RoomSource::Shown> RoomSource::choose(uint64_t step) const {
+  std::vector<Shown> shown;
   for (uint64_t b = 0; b < static_cast<uint64_t>(batch_); ++b) {
     const uint64_t index = step * static_cast<uint64_t>(batch_) + b;
-    scenes_.push_back(sample_scene(rooms_, renderer_.lens().half_view(), seed_, index));
     Random random(seed_, kChoiceStreams + index);
-    frames_.push_back(choices_[random.below(static_cast<uint32_t>(choices_.size()))]);
+    shown.push_back({sample_scene(rooms_, lens_.half_view(), seed_, index),
+                     choices_[random.below(static_cast<uint32_t>(choices_.size()))]});
   }
+  return shown;
+}
+
+TripletBatch RoomSource::draw(const std::vector<Shown>& shown, int first_frame, RoomRenderer& renderer) const {
+  TripletBatch batch{.batch = batch_, .height = lens_.height, .width = lens_.width};
   std::vector<View> views;
-  for (std::size_t frame = 0; frame < 3; ++frame) {
-    poses_[frame].clear();
-    for (std::size_t b = 0; b < scenes_.size(); ++b) {
-      views.push_back({&scenes_[b], frames_[b][frame]});
-      const auto pose = scenes_[b].cameras[static_cast<std::size_t>(frames_[b][frame])].numbers();
-      poses_[frame].insert(poses_[frame].end(), pose.begin(), pose.end());
+  for (int frame = 0; frame < kFrames; ++frame) {
+    for (const auto& [scene, frames] : shown) {
+      const int which = frames[static_cast<std::size_t>(frame)];
+      if (frame >= first_frame) views.push_back({&scene, which});
+      const auto pose = scene.cameras[static_cast<std::size_t>(which)].numbers();
+      auto& poses = batch.poses[static_cast<std::size_t>(frame)];
+      poses.insert(poses.end(), pose.begin(), pose.end());
     }
   }
-  renderer_.render(views);
-}
-
-Slice RoomSource::third(const Slice& whole, int frame) const {
-  return whole.sub(whole.bytes / 3 * static_cast<uint64_t>(frame), whole.bytes / 3);
-}
-
-Slice RoomSource::image(int frame) { return third(renderer_.image(), frame); }
-Slice RoomSource::depth() { return third(renderer_.depth(), 1); }
-Slice RoomSource::label() { return third(renderer_.label(), 1); }
-
-std::vector<std::vector<ObjectTruth>> RoomSource::truths(const std::vector<uint32_t>& label) const {
-  std::vector<std::vector<ObjectTruth>> result;
-  const std::size_t area = renderer_.lens().pixels();
-  for (std::size_t b = 0; b < scenes_.size(); ++b) {
-    const Scene& scene = scenes_[b];
-    const int frame = frames_[b][1];
-    std::vector<ObjectTruth> objects;
-    for (const RoomObject& object : scene.objects) {
-      objects.push_back({scene.cameras[static_cast<std::size_t>(frame)].see(object.position(frame)), 0});
-    }
-    for (std::size_t i = b * area; i < (b + 1) * area; ++i) {
-      if (label[i] > 0) ++objects[label[i] - 1].pixels;
-    }
-    result.push_back(std::move(objects));
-  }
-  return result;
-}
-
-TripletBatch RoomSource::download() {
-  TripletBatch result;
-  result.batch = batch_;
-  result.height = renderer_.lens().height;
-  result.width = renderer_.lens().width;
-  for (int frame = 0; frame < 3; ++frame)
-    result.images[static_cast<std::size_t>(frame)] = renderer_.planes(image(frame));
-  result.poses = poses_;
-  result.depth = download_values<float>(renderer_.device(), depth());
-  result.label = download_values<uint32_t>(renderer_.device(), label());
-  result.objects = truths(result.label);
-  return result;
+  renderer.render(views);
+  return batch;
 }
 
 TripletBatch RoomSource::read(uint64_t step) {
-  render(step);
-  return download();
+  if (!whole_) whole_.emplace(*device_, lens_, rooms_, kFrames * batch_);
+  const std::vector<Shown> shown = choose(step);
+  TripletBatch batch = draw(shown, 0, *whole_);
+  for (int frame = 0; frame < kFrames; ++frame)
+    batch.images[static_cast<std::size_t>(frame)] =
+        download_values<float>(*device_, part(whole_->image(), frame, kFrames));
+  batch.depth = download_values<float>(*device_, part(whole_->depth(), 1, kFrames));
+  batch.label = download_values<uint32_t>(*device_, part(whole_->label(), 1, kFrames));
+  for (std::size_t b = 0; b < shown.size(); ++b)
+    batch.objects.push_back(truth_of(shown[b].scene, shown[b].frames[1],
+                                     std::span(batch.label).subspan(b * lens_.pixels(), lens_.pixels())));
+  return batch;
+}
+
+TripletBatch RoomSource::show(uint64_t step, const std::vector<bool>& reversed, int first_frame) {
+  const int views = (kFrames - first_frame) * batch_;
+  if (!training_ || training_->views() != views)
+    training_.emplace(*device_, lens_, rooms_, views, RoomRenderer::Truth::kLeftOut);
+  std::vector<Shown> shown = choose(step);
+  for (std::size_t b = 0; b < shown.size(); ++b)
+    if (reversed.at(b)) std::swap(shown[b].frames[0], shown[b].frames[2]);
+  TripletBatch batch = draw(shown, first_frame, *training_);
+  batch.drawn = training_->image();
+  return batch;
 }
 
 }  // namespace vkopple

@@ -35,7 +35,7 @@ struct Material {
   int pattern = 0;  ///< below kPeriodicPatterns periodic, from kFirstSmoothPattern on smooth
   double period = 1;
   std::array<Vec3, 3> colours{};
-  Vec3 phase{};
+  Vec3 phase{};  ///< in periods, of smooth ones in scene units
   std::array<double, 4> turn{1, 0, 0,
                              0};  ///< unit quaternion w, x, y, z from the surface's frame to the pattern's
 };

@@ -7,6 +7,14 @@ namespace {
 
 constexpr int kLying = 8;
 
+/// Rows of the rotation by a unit quaternion w, x, y, z.
+std::array<Vec3, 3> rotation_of(const std::array<double, 4>& q) {
+  const auto [w, x, y, z] = q;
+  return {Vec3{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+          Vec3{2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+          Vec3{2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+}
+
 class Rows {
  public:
   explicit Rows(std::vector<float>& out) : out_(&out) {}
@@ -16,11 +24,16 @@ class Rows {
   void add(const Vec3& v, double w) { add(v[0], v[1], v[2], w); }
 
   void add(const Material& m) {
+    const bool smooth = m.pattern >= kFirstSmoothPattern;
+    const auto rotation = rotation_of(m.turn);
+    Vec3 phase = m.phase;
+    if (smooth)
+      for (double& p : phase) p /= m.period;
+    for (std::size_t i = 0; i < 3; ++i)
+      add(rotation[i][0] / m.period, rotation[i][1] / m.period, rotation[i][2] / m.period, phase[i]);
     add(m.colours[0], m.pattern);
-    add(m.colours[1], m.period);
+    add(m.colours[1], m.phase[0] - 0.4 * (phase[0] + phase[1]));
     add(m.colours[2], 0);
-    add(m.phase, 0);
-    add(m.turn[1], m.turn[2], m.turn[3], m.turn[0]);
   }
 
  private:

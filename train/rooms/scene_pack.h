@@ -17,9 +17,10 @@ namespace vkopple {
 //              e, c, 0, 0 | material
 //   wall, floor, ceiling: a material each
 //
-// A material is 5 rows: colour 0, pattern | colour 1, period | colour 2, 0 | phase, 0 | turn x, y, z, w.
+// A material is 6 rows: row i of its rotation over its period, component i of its phase, in the unit of the
+// period | colour 0, pattern | colour 1, shift of marble's veins | colour 2, 0.
 inline constexpr std::size_t kHeaderRows = 5;
-inline constexpr std::size_t kMaterialRows = 5;
+inline constexpr std::size_t kMaterialRows = 6;
 inline constexpr std::size_t kObjectRows = 4 + kMaterialRows;
 inline constexpr std::size_t kRoomSurfaces = 3;
 

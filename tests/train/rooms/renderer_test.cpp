@@ -135,6 +135,10 @@ struct Still {
   }
 };
 
+std::vector<float> pixels_of(const RoomRenderer& renderer, const Slice& images) {
+  return download_values<float>(renderer.device(), images);
+}
+
 struct Pixels {
   std::vector<float> image, depth;
   std::vector<uint32_t> label;
@@ -143,7 +147,7 @@ struct Pixels {
 Pixels draw(const Device& device, const Still& still, const Lens& lens) {
   RoomRenderer renderer(device, lens, still.config, 1);
   renderer.render({{&still.scene, 0}});
-  return {renderer.planes(renderer.image()), download_values<float>(device, renderer.depth()),
+  return {pixels_of(renderer, renderer.image()), download_values<float>(device, renderer.depth()),
           download_values<uint32_t>(device, renderer.label())};
 }
 
@@ -240,7 +244,7 @@ TEST(RoomRenderer, SupersamplingIsTheMeanOfAFinerPicture) {
   config.supersample = 1;
   RoomRenderer sharp(test_device(), fine, config, 2);
   sharp.render(views);
-  const auto a = coarse.planes(coarse.image()), b = sharp.planes(sharp.image());
+  const auto a = pixels_of(coarse, coarse.image()), b = pixels_of(sharp, sharp.image());
   double difference = 0;
   for (std::size_t plane = 0; plane < 6; ++plane) {
     for (std::size_t y = 0; y < 20; ++y) {
@@ -262,9 +266,9 @@ TEST(RoomRenderer, AViewIsTheSameInAnyCompany) {
   three.render({{&scenes[0], 1}, {&scenes[1], 2}, {&scenes[2], 6}});
   one.render({{&scenes[1], 2}});
   const uint64_t bytes = one.image().bytes;
-  EXPECT_EQ(one.planes(one.image()), three.planes(three.image().sub(bytes, bytes)));
+  EXPECT_EQ(pixels_of(one, one.image()), pixels_of(three, three.image().sub(bytes, bytes)));
   one.render({{&scenes[2], 6}});
-  EXPECT_EQ(one.planes(one.image()), three.planes(three.image().sub(2 * bytes, bytes)));
+  EXPECT_EQ(pixels_of(one, one.image()), pixels_of(three, three.image().sub(2 * bytes, bytes)));
 }
 
 TEST(RoomRenderer, TooMuchAtOnceIsAnError) {
@@ -289,7 +293,7 @@ TEST(RoomRenderer, PicturesAreColouredAndVaried) {
   std::vector<View> views;
   for (const Scene& scene : scenes) views.push_back({&scene, 3});
   renderer.render(views);
-  const auto image = renderer.planes(renderer.image());
+  const auto image = pixels_of(renderer, renderer.image());
   for (std::size_t plane = 0; plane < 24; ++plane) {
     const auto begin = image.begin() + static_cast<std::ptrdiff_t>(plane * 1024);
     const auto [low, high] = std::minmax_element(begin, begin + 1024);

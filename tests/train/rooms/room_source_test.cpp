@@ -5,7 +5,13 @@
 #include <cmath>
 #include <set>
 
+#include "runtime/transfer.h"
 #include "tests/support/test_device.h"
+#include "tests/support/tiny_model.h"
+#include "train/model_store.h"
+#include "train/step_batch.h"
+#include "train/step_record.h"
+#include "train/training_step.h"
 
 namespace vkopple {
 namespace {
@@ -78,12 +84,62 @@ TEST(RoomSource, FramesAreEvenlyStridedAndAllStridesComeUp) {
   rooms.frames = 5;
   rooms.supersample = 1;
   RoomSource source(test_device(), Lens(8, 8, 1.3), rooms, 20, 1);
-  source.render(0);
-  for (int frame = 0; frame < 3; ++frame) EXPECT_EQ(source.image(frame).bytes, 20U * 64 * 16);
-  EXPECT_EQ(source.poses(0), source.poses(2));  // the camera rests; only objects move
-  const TripletBatch b = source.download();
+  const TripletBatch b = source.read(0);
+  EXPECT_EQ(b.poses[0], b.poses[2]);  // the camera rests; only objects move
   EXPECT_NE(b.images[0], b.images[1]);
   EXPECT_NE(b.images[1], b.images[2]);
+}
+
+/// Triplet `b` of one frame.
+template <class T>
+std::vector<T> element(const std::vector<T>& all, std::size_t b, std::size_t batch) {
+  const auto size = static_cast<std::ptrdiff_t>(all.size() / batch),
+             begin = static_cast<std::ptrdiff_t>(b) * size;
+  return {all.begin() + begin, all.begin() + begin + size};
+}
+
+TEST(RoomSource, TrainingSeesThePicturesThatAreRead) {
+  for (const int first : {0, 1}) {
+    RoomSource source(test_device(), kLens, RoomsConfig{}, 3, 42);
+    const TripletBatch read = source.read(5), shown = source.show(5, {false, true, false}, first);
+    const auto drawn = download_values<float>(test_device(), shown.drawn);
+    const std::size_t frame_size = 9 * kLens.pixels(), frames = 3 - static_cast<std::size_t>(first);
+    ASSERT_EQ(drawn.size(), frames * frame_size);
+    for (std::size_t frame = static_cast<std::size_t>(first); frame < 3; ++frame) {
+      const auto begin = drawn.begin() + static_cast<std::ptrdiff_t>((frame - 3 + frames) * frame_size);
+      const std::vector<float> images(begin, begin + static_cast<std::ptrdiff_t>(frame_size));
+      for (std::size_t b = 0; b < 3; ++b) {
+        const std::size_t from = b == 1 ? 2 - frame : frame;
+        EXPECT_EQ(element(images, b, 3), element(read.images[from], b, 3)) << "frame " << frame << " of " << b;
+        EXPECT_EQ(element(shown.poses[frame], b, 3), element(read.poses[from], b, 3));
+      }
+    }
+    EXPECT_TRUE(shown.depth.empty() && shown.label.empty() && shown.objects.empty());
+  }
+}
+
+TEST(RoomSource, AModelLearnsTheSameFromPicturesLeftOnTheDevice) {
+  const Config config = test::tiny_config();
+  for (const TrainingStage& stage : config.stages()) {
+    RoomSource source(test_device(), Lens(config.model), stage.rooms, stage.batch, 42);
+    std::vector<Losses> losses;
+    for (const bool on_device : {true, false}) {
+      ModelStore store(test_device(), config.model, config.training.precision);
+      store.initialise(1);
+      TrainingStep training(test_device(), config, stage, store.groups());
+      const int first = training.model().first_frame();
+      EXPECT_EQ(first, stage.name == "depth" ? 1 : 0);
+      Triplets triplets = training_triplets(source, 9, 0, stage.batch, 0.5, first);
+      ASSERT_TRUE(triplets.drawn);
+      if (!on_device) {
+        auto reversed = reversed_triplets(9, 0, stage.batch, 0.5);
+        triplets = model_triplets(source.TripletSource::show(0, reversed, first), triplets.permutation);
+        ASSERT_FALSE(triplets.drawn);
+      }
+      losses.push_back(training.run(triplets, 1, 0));
+    }
+    EXPECT_EQ(losses[0], losses[1]) << stage.name;
+  }
 }
 
 }  // namespace

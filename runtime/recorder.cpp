@@ -254,11 +254,13 @@ void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initi
            {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), 1});
 }
 
-void Recorder::dispatch_units(std::string_view shader, uint64_t units, bool wide,
+uint64_t Recorder::units_of_rows() const { return uint64_t{caps().subgroup_size} * kRowsOfGroup; }
+
+void Recorder::dispatch_units(std::string_view shader, uint64_t units, bool rows,
                               std::initializer_list<Slice> bindings, const Push& push,
-                              const std::vector<uint32_t>& constants, uint64_t run) {
-  const uint64_t group = uint64_t{caps().subgroup_size} * kRowsOfGroup;
-  if (!caps().row_stores || !wide || units % 2 != 0 || run % group != 0 || units < group)
+                              const std::vector<uint32_t>& constants) {
+  const uint64_t group = units_of_rows();
+  if (!caps().row_stores || !rows || units % 2 != 0 || units < group)
     return dispatch_flat(shader, (units + 3) / 4, bindings, push, constants);
   std::vector<uint32_t> all{caps().subgroup_size};
   all.insert(all.end(), constants.begin(), constants.end());

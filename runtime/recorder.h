@@ -128,10 +128,13 @@ class Recorder {
   /// `count` on must return. `constants` start at constant_id 1.
   void dispatch_flat(std::string_view shader, uint64_t count, std::initializer_list<Slice> bindings,
                      const Push& push, const std::vector<uint32_t>& constants = {});
-  /// Runs a kernel of shaders/include/unit_rows.glsl on `units` vec4s, or, where it isn't `wide`, words.
-  /// run: rows are stored only where runs of that many units are whole workgroups; 0: the units are one run.
-  void dispatch_units(std::string_view shader, uint64_t units, bool wide, std::initializer_list<Slice> bindings,
-                      const Push& push, const std::vector<uint32_t>& constants = {}, uint64_t run = 0);
+  /// Runs a kernel of shaders/include/unit_rows.glsl on `units` vec4s or words. rows: its workgroups may store
+  /// rows of vec4s, which then must start at even vec4s of what is written; they do where the device stores
+  /// rows (Caps::row_stores) and units are even and enough.
+  void dispatch_units(std::string_view shader, uint64_t units, bool rows, std::initializer_list<Slice> bindings,
+                      const Push& push, const std::vector<uint32_t>& constants = {});
+  /// The units of a workgroup of such a kernel where it stores rows.
+  uint64_t units_of_rows() const;
 
   /// Sets every 32-bit word.
   void fill(const Slice& slice, uint32_t word = 0);

@@ -26,8 +26,8 @@ struct Packed {
   int64_t in, out, taps;
 
   Packed(const ConvShape& shape, ConvDirection direction)
-      : in(direction == ConvDirection::kForward ? shape.ci : shape.co),
-        out(direction == ConvDirection::kForward ? shape.co : shape.ci),
+      : in(channels_of(shape, direction).in),
+        out(channels_of(shape, direction).out),
         taps(shape.kernel * shape.kernel) {}
   int64_t tap_vectors() const { return 2 * ((in + 7) / 8) * 4 * blocks4(out); }
   uint64_t bytes() const {
@@ -45,23 +45,11 @@ void record_pack(Recorder& recorder, const Packed& packed, ConvDirection directi
   recorder.dispatch_flat("conv_cooperative_pack", static_cast<uint64_t>(packed.tap_vectors()), {w, to}, push);
 }
 
-/// The largest phase's work; phases differ by a row and a column at most.
 CooperativeWork work_of(const ProductPush& push, const Packed& packed) {
-  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
-  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
-  return {.rows = push.n * rows * columns,
+  return {.rows = phase_pixels(push),
           .columns = packed.out,
           .summed = packed.in,
           .repeats = int64_t{push.phases} * push.phases};
-}
-
-/// Tiles of one phase in the first two directions, phases in the third.
-Groups groups_of(const CooperativeWork& work, const CooperativeTile& tile, int64_t channel_tiles,
-                 const Caps& caps) {
-  const int64_t count = (work.rows + tile.tile_rows() - 1) / tile.tile_rows() * channel_tiles;
-  const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
-  return {static_cast<uint32_t>(x), static_cast<uint32_t>((count + x - 1) / x),
-          static_cast<uint32_t>(work.repeats)};
 }
 
 }  // namespace
@@ -80,15 +68,17 @@ void record_conv_cooperative(Recorder& recorder, const ConvShape& shape, ConvDir
 
   const CooperativeWork work = work_of(push, packed);
   const auto kernel = direction == ConvDirection::kForward ? kCooperativeForward : kCooperativeTransposed;
-  const auto tuned = tuned_cooperative_tile(tuning_key(kernel, shape), CooperativeUse::kProduct, caps);
+  const auto tuned = tuned_cooperative_tile(tuning_key(kernel, shape, operands.storage(direction)),
+                                            CooperativeUse::kProduct, caps);
   const CooperativeTile tile = tuned ? *tuned : choose_cooperative_tile(work, CooperativeUse::kProduct, caps);
   push.bias = operands.bias ? static_cast<int32_t>(packed.out) : 0;
   push.tiles = static_cast<int32_t>((packed.out + tile.tile_columns() - 1) / tile.tile_columns());
+  const int64_t tiles = (work.rows + tile.tile_rows() - 1) / tile.tile_rows() * push.tiles;
   recorder.dispatch("conv_cooperative",
                     {tile.subgroups() * caps.subgroup_size, tile.matrix.m, tile.matrix.n, tile.matrix.k,
                      tile.rows, tile.columns, tile.down, tile.across, tile.depth},
                     {operands.in, weights, operands.bias, operands.out},
-                    CooperativePush{push, operands.accumulate}, groups_of(work, tile, push.tiles, caps));
+                    CooperativePush{push, operands.accumulate}, phase_groups(tiles, work.repeats, caps));
 }
 
 }  // namespace vkopple

@@ -32,15 +32,6 @@ struct PackPush {
   int32_t weight_vectors, weight_invocations, invocations;
 };
 
-struct Channels {
-  int64_t in, out;
-};
-
-Channels channels_of(const ConvShape& shape, ConvDirection direction) {
-  if (direction == ConvDirection::kForward) return {shape.ci, shape.co};
-  return {shape.co, shape.ci};
-}
-
 /// Output channels that weights and bias are packed for: whole tiles, of any size that could be chosen.
 int64_t packed_channels(int64_t channels) {
   for (const int64_t most : {8, 16})
@@ -201,17 +192,6 @@ uint32_t straight_vectors(const ProductPush& push, const ConvTile& tile) {
   return straight ? static_cast<uint32_t>(push.in4) : 0;
 }
 
-/// Workgroups for every tile of a phase in the first two directions, phases in the third.
-Groups groups_of(const ProductPush& push, const ConvTile& tile, int64_t lanes, const Caps& caps) {
-  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
-  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
-  const int64_t tile_pixels = lanes * tile.pixels;
-  const int64_t count = (push.n * rows * columns + tile_pixels - 1) / tile_pixels * push.tiles;
-  const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
-  return {static_cast<uint32_t>(x), static_cast<uint32_t>((count + x - 1) / x),
-          static_cast<uint32_t>(push.phases * push.phases)};
-}
-
 }  // namespace
 
 bool is_conv_kernel(std::string_view kernel) {
@@ -272,11 +252,14 @@ void record_conv_product(Recorder& recorder, const ConvShape& shape, ConvDirecti
   const bool rows = family == kShuffle && operands.accumulate == 0 && push.phases == 1 &&
                     push.out_h * push.out_w % caps.subgroup_size == 0 &&
                     row_stores_pay(push.taps[0] * push.taps[0] * push.in4, tile.out4 * tile.pixels, caps);
+  const int64_t tile_pixels = work.lanes * tile.pixels;
+  const Groups groups = phase_groups((phase_pixels(push) + tile_pixels - 1) / tile_pixels * push.tiles,
+                                     int64_t{push.phases} * push.phases, caps);
   recorder.dispatch(
       "conv_product." + std::string(family),
       {static_cast<uint32_t>(work.lanes), static_cast<uint32_t>(tile.out4), static_cast<uint32_t>(tile.pixels),
        operands.accumulate, straight_vectors(push, tile), caps.exact_sums ? 1U : 0U, rows ? 1U : 0U},
-      {operands.in, packed, operands.out}, push, groups_of(push, tile, work.lanes, caps));
+      {operands.in, packed, operands.out}, push, groups);
 }
 
 }  // namespace vkopple

@@ -26,8 +26,8 @@ struct Packed {
   int64_t in, out, taps;
 
   Packed(const ConvShape& shape, ConvDirection direction)
-      : in(direction == ConvDirection::kForward ? shape.ci : shape.co),
-        out(direction == ConvDirection::kForward ? shape.co : shape.ci),
+      : in(channels_of(shape, direction).in),
+        out(channels_of(shape, direction).out),
         taps(shape.kernel * shape.kernel) {}
   int64_t tap_vectors() const { return 4 * blocks4(in) * blocks4(out); }
   int64_t weight_vectors() const { return taps * tap_vectors(); }
@@ -49,11 +49,8 @@ void record_pack(Recorder& recorder, const Packed& packed, ConvDirection directi
                          {operands.w, operands.bias, to}, push);
 }
 
-/// The largest phase's work; phases differ by a row and a column at most.
 SharedWork work_of(const ProductPush& push) {
-  const int64_t rows = (push.out_h + push.phases - 1) / push.phases;
-  const int64_t columns = (push.out_w + push.phases - 1) / push.phases;
-  return {.pixels = push.n * rows * columns,
+  return {.pixels = phase_pixels(push),
           .phases = int64_t{push.phases} * push.phases,
           .out4 = push.out4,
           .in4 = push.in4};
@@ -61,14 +58,6 @@ SharedWork work_of(const ProductPush& push) {
 
 std::string key_of(const ConvShape& shape, ConvDirection direction, ConvStorage storage) {
   return tuning_key(direction == ConvDirection::kForward ? kSharedForward : kSharedTransposed, shape, storage);
-}
-
-/// Tiles of one phase in the first two directions, phases in the third.
-Groups groups_of(const SharedWork& work, const SharedTile& tile, int64_t channel_tiles, const Caps& caps) {
-  const int64_t count = (work.pixels + tile.tile_pixels() - 1) / tile.tile_pixels() * channel_tiles;
-  const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
-  return {static_cast<uint32_t>(x), static_cast<uint32_t>((count + x - 1) / x),
-          static_cast<uint32_t>(work.phases)};
 }
 
 }  // namespace
@@ -99,11 +88,12 @@ void record_conv_shared(Recorder& recorder, const ConvShape& shape, ConvDirectio
   const SharedTile tile = tuned ? *tuned : choose_shared_tile(work, caps);
   push.bias = static_cast<int32_t>(packed.weight_vectors());
   push.tiles = static_cast<int32_t>((4 * work.out4 + tile.tile_channels() - 1) / tile.tile_channels());
+  const int64_t tiles = (work.pixels + tile.tile_pixels() - 1) / tile.tile_pixels() * push.tiles;
   recorder.dispatch("conv_shared",
                     {tile.invocations(), tile.out4, tile.pixels, tile.across, tile.down, tile.depth,
                      caps.exact_sums ? 1U : 0U},
                     {operands.in, weights, operands.out}, SharedPush{push, operands.accumulate},
-                    groups_of(work, tile, push.tiles, caps));
+                    phase_groups(tiles, work.phases, caps));
 }
 
 }  // namespace vkopple

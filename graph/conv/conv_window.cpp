@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "graph/conv/conv_push.h"
 #include "graph/conv/conv_tile.h"
 #include "graph/tensor.h"
 
@@ -155,13 +156,11 @@ void record_conv_window(Recorder& recorder, const ConvShape& s, ConvDirection di
       row_stores_pay(s.kernel * s.kernel * push.in4, blocks4(tile.channels) * tile.pixels * sides.phases, caps);
   const int64_t rows = ceil_divide(sides.out_h, sides.phases);
   const int64_t count = ceil_divide(s.n * rows * push.blocks, caps.subgroup_size) * push.tiles;
-  const int64_t x = std::min<int64_t>(count, caps.max_groups[0]);
   recorder.dispatch("conv_window",
                     {caps.subgroup_size, u32(tile.channels), u32(tile.pixels), operands.accumulate,
                      u32(s.kernel), u32(s.stride), u32(s.padding), forward ? 0U : 1U,
                      u32(std::min<int64_t>(sides.in, 4)), whole ? 1U : 0U, known ? 1U : 0U},
-                    {operands.in, packed, operands.out}, push,
-                    {u32(x), u32(ceil_divide(count, x)), u32(sides.phases)});
+                    {operands.in, packed, operands.out}, push, phase_groups(count, sides.phases, caps));
 }
 
 }  // namespace vkopple

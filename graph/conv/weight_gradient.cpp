@@ -44,7 +44,7 @@ WeightGradientPartial partial_of(WeightGradientKernel kernel, const ConvShape& s
     case WeightGradientKernel::kShared:
       return plan_shared(shape, caps, storage).partial;
     case WeightGradientKernel::kCooperative:
-      return plan_cooperative(shape, caps).partial;
+      return plan_cooperative(shape, caps, storage).partial;
     default:
       return plan_simple(shape).partial;
   }
@@ -108,20 +108,21 @@ void record_weight_gradient(Recorder& recorder, const ConvShape& shape, Slice x,
     first_stage(plan, partial);
     record_sum(recorder, shape, plan.partial, partial, dw, accumulate);
   };
+  const ConvStorage storage{x.storage, dy.storage};
   switch (choose(shape, x.storage, dy.storage, caps, kernel)) {
     case WeightGradientKernel::kRegister:
       return record(plan_register(shape, caps), [&](const RegisterPlan& plan, const Slice& partial) {
         record_register(recorder, plan, x, dy, partial);
       });
     case WeightGradientKernel::kShared:
-      return record(plan_shared(shape, caps, {x.storage, dy.storage}),
-                    [&](const SharedPlan& plan, const Slice& partial) {
-                      record_shared(recorder, shape, plan, x, dy, partial);
-                    });
-    case WeightGradientKernel::kCooperative:
-      return record(plan_cooperative(shape, caps), [&](const CooperativePlan& plan, const Slice& partial) {
-        record_cooperative(recorder, shape, plan, x, dy, partial);
+      return record(plan_shared(shape, caps, storage), [&](const SharedPlan& plan, const Slice& partial) {
+        record_shared(recorder, shape, plan, x, dy, partial);
       });
+    case WeightGradientKernel::kCooperative:
+      return record(plan_cooperative(shape, caps, storage),
+                    [&](const CooperativePlan& plan, const Slice& partial) {
+                      record_cooperative(recorder, shape, plan, x, dy, partial);
+                    });
     default:
       return record(plan_simple(shape), [&](const SimplePlan& plan, const Slice& partial) {
         record_simple(recorder, shape, plan, x, dy, partial);

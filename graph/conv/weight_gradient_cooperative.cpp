@@ -10,13 +10,13 @@ int64_t ceil_div(int64_t a, int64_t b) { return (a + b - 1) / b; }
 
 }  // namespace
 
-CooperativePlan plan_cooperative(const ConvShape& s, const Caps& caps) {
+CooperativePlan plan_cooperative(const ConvShape& s, const Caps& caps, ConvStorage storage) {
   const CooperativeWork work{.rows = s.co,
                              .columns = s.kernel * s.kernel * 4 * blocks4(s.ci),
                              .summed = s.n * s.ho * s.wo,
                              .repeats = kManyStrips};
   const CooperativeUse use = CooperativeUse::kWeightGradient;
-  const auto tuned = tuned_cooperative_tile(tuning_key(kCooperativeGradient, s), use, caps);
+  const auto tuned = tuned_cooperative_tile(tuning_key(kCooperativeGradient, s, storage), use, caps);
   CooperativePlan plan{
       .tile = tuned ? *tuned : choose_cooperative_tile(work, use, caps), .strip_pixels = 0, .partial = {}};
   plan.row_groups = ceil_div(work.rows, plan.tile.tile_rows());

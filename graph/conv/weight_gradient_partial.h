@@ -86,7 +86,7 @@ struct CooperativePlan {
   int64_t strip_pixels;
   WeightGradientPartial partial;
 };
-CooperativePlan plan_cooperative(const ConvShape& shape, const Caps& caps);
+CooperativePlan plan_cooperative(const ConvShape& shape, const Caps& caps, ConvStorage storage);
 void record_cooperative(Recorder& recorder, const ConvShape& shape, const CooperativePlan& plan, const Slice& x,
                         const Slice& dy, const Slice& partial);
 

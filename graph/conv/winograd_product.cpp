@@ -33,9 +33,10 @@ int64_t shared_blocks(const ProductTile& tile, int64_t lanes) {
 }
 
 /// Nanoseconds of a subgroup's work for one tile and frequency, from single costs measured on lavapipe (2 cores
-/// of AMD Zen 5): for 8 lanes, 6 for a fetch and 17 (7 as a row) for a vector stored; for any number of lanes
-/// 0.19 for a multiply-add with its share of the shuffles and 0.25 for carrying a sum through the loop. On an
-/// Intel with AVX-512 all are about twice that.
+/// of AMD Zen 5): for 8 lanes, 6 for a fetch and 17 for a vector stored; for any number of lanes 0.19 for a
+/// multiply-add with its share of the shuffles and 0.25 for carrying a sum through the loop. The 7 for a vector
+/// stored by rows are an estimate: an Intel with AVX-512 takes 13, where a fetch takes 8.5 and a multiply-add
+/// 0.4.
 double tile_cost(const ProductTile& tile, int64_t in4, int64_t lanes, bool row_stores) {
   const auto vectors = static_cast<double>(tile.out4 * tile.tiles);
   const auto eights = static_cast<double>(lanes) / 8;

@@ -32,8 +32,9 @@ void copy_runs(Recorder& recorder, const Slice& from, const Slice& to, const Run
                           .to_stride = u32(r.to_stride / unit),
                           .to_begin = u32(r.to_begin / unit),
                           .accumulate = accumulate};
-  recorder.dispatch_units(wide ? "copy_runs.vec4s" : "copy_runs.words", push.units, wide, {from, to, to}, push,
-                          {}, push.run);
+  const bool even = (push.to_stride | push.to_begin) % 2 == 0;
+  const bool rows = wide && even && push.run % recorder.units_of_rows() == 0;
+  recorder.dispatch_units(wide ? "copy_runs.vec4s" : "copy_runs.words", push.units, rows, {from, to, to}, push);
 }
 
 }  // namespace vkopple

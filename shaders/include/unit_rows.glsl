@@ -1,13 +1,13 @@
-// Kernels whose invocations make 4 consecutive vec4s of one tensor, or, where the runtime says so (kUnitRows, set by
-// Recorder::dispatch_units), a subgroup's rows of it, in straight code (row_store.glsl). Include after flat_any.glsl.
+// Kernels that make the vec4s of a tensor, each from those of the same number in others: an invocation takes 4 that follow one another,
+// or, with kUnitRows, a workgroup of one subgroup kRowsOfGroup rows of them, in straight code (row_store.glsl). Recorder::dispatch_units
+// chooses. Include after flat_any.glsl and row_store.glsl; the variant of single words has no rows.
 //
-//   FOR_UNITS(i, units, body)     in main(): body for every unit of the invocation; with rows, body is never reached: call
-//   ROWS(first, at, body)         body for `at`, the unit of this lane in each of the workgroup's rows, the row starting at `first`,
-//                                 which is known to be uniform; only within #ifdef UNIT_ROWS
+//   ROWS(row, i, body)   within #ifdef UNIT_ROWS and where kUnitRows: body for each of the workgroup's rows, which starts at unit `row`,
+//                        known to be uniform; `i` is this lane's unit of it, or beyond the last one
 #if defined(TEXEL) && defined(WIDE)
 #define UNIT_ROWS
 layout(constant_id = 4) const bool kUnitRows = false;
-const int kRowsOfGroup = 8;  // twice as many gain a tenth
+const int kRowsOfGroup = 8;  // of copies, twice as many take a fifth to a quarter less time, and twice as long to compile
 
 // The first unit of the workgroup.
 #define FIRST_UNIT                                                                                                                     \

@@ -222,17 +222,18 @@ TEST(ConvCooperativeTest, EveryTileMatchesPlainLoops) {
                        .kernels = KernelFamily::kCooperative,
                        .tuned = [&](const Caps&) { return choices; }});
   const ConvShape shape{2, 20, 9, 11, 40, 9, 11, 3, 1, 1, 1};
+  const ConvStorage stored{Storage::kFloat16, Storage::kFloat16};
   size_t count = 0;
   for (const CooperativeTile& tile : cooperative_tiles(CooperativeUse::kProduct, device.caps())) {
     if (2 * tile.slab() <= 32 && tile.rows * tile.columns > 1) continue;  // as others, but less deep
     SCOPED_TRACE(fmt::format("tile {}", fmt::join(numbers_of(tile), " ")));
     for (const ConvDirection direction : {ConvDirection::kForward, ConvDirection::kTransposed}) {
       const auto kernel = direction == ConvDirection::kForward ? kCooperativeForward : kCooperativeTransposed;
-      (*choices)[tuning_key(kernel, shape)] = numbers_of(tile);
+      (*choices)[tuning_key(kernel, shape, stored)] = numbers_of(tile);
       Problem problem(device, shape, direction, Storage::kFloat16);
       problem.expect(problem.run({}, 1), true);
     }
-    (*choices)[tuning_key(kCooperativeGradient, shape)] = numbers_of(tile);
+    (*choices)[tuning_key(kCooperativeGradient, shape, stored)] = numbers_of(tile);
     if (fits(tile, CooperativeUse::kWeightGradient, device.caps()))
       check_gradient(device, shape, Storage::kFloat16);
     ++count;

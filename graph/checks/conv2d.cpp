@@ -81,6 +81,9 @@ void check_conv2d(CheckList& list) {
       {{1, 2, 9, 8}, 3, 3, {.stride = 2, .padding = 2, .dilation = 2}},
       {{1, 2, 9, 11}, 3, 3, {.stride = 2, .padding = 3, .dilation = 3}},
       {{1, 2, 11, 11}, 1, 3, {}},
+      // Whole rows of a subgroup's pixels, in several images and beyond the last channel.
+      {{3, 8, 4, 4}, 20, 1, {}},
+      {{3, 12, 8, 8}, 12, 3, {.padding = 1}},
   };
   for (const Case& c : cases)
     for (const std::string kernel : {"shuffle", "window", "uniform", "shared"}) {

@@ -193,6 +193,8 @@ TEST(WinogradTest, MatchesPlainLoopsOverSeveralChunks) {
     EXPECT_LT(chunks.chunk_blocks, chunks.blocks());
   }
   check_shape(test_device(), s);
+  // Channels of whole subgroups, whose weight gradient is stored by rows and added to from the second chunk on.
+  check_shape(test_device(), shape_of(1, 64, 98, 98, 5, 1));
 }
 
 Caps cpu_caps() {

@@ -30,9 +30,6 @@ const int kNowhere = 0x07ffff00;
 #define known_uniform6(x) (kRowStores ? octal_digits4(x) | octal_digit(x, 4) | octal_digit(x, 5) : (x))
 #define known_uniform8(x) (kRowStores ? octal_digits4(x) | octal_digits4((x) >> 12) << 12 : (x))
 
-// Lanes of the widest subgroup that rows are stored of.
-const int kMostLanes = 16;
-
 // A lane's vector as words to store.
 #define ROW_WORDS(name, v) (name##_is_float16 ? uvec4(float16_words(v), 0, 0) : floatBitsToUint(v))
 #define LANE_LOW(words, lane) packUint2x32(uvec2(from_lane(words.x, lane), from_lane(words.y, lane)))

@@ -16,6 +16,19 @@ READ4(2, dy)
 READ4(3, table)
 WRITE4(4, partials)
 
+struct Item {
+  vec4 dy;       // through dropout
+  vec4 product;  // with leaky(x) - mean
+};
+
+Item next_item(inout Walk walk, uvec2 key, vec4 mean) {
+  vec4 d = load4(dy, walk.at);
+  if (kDropout != 0) d *= dropout4(key, walk.at * 4, p.threshold, p.scale);
+  vec4 centred = leaky(load4(x, walk.at), p.slope) - mean;
+  walk_on(walk);
+  return Item(d, d * centred);
+}
+
 void main() {
   uint q = gl_GlobalInvocationID.x;
   if (q >= p.strips) return;
@@ -26,12 +39,19 @@ void main() {
     uvec2 key = kDropout != 0 ? random_key(random[0], random[1], p.stream) : uvec2(0);
     vec4 mean = load4(table, (group * p.blocks + cb) * 4);
     Walk walk = walk_begin(group, cb, q);
-    for (uint k = 0; k < count; ++k) {
-      vec4 d = load4(dy, walk.at);
-      if (kDropout != 0) d *= dropout4(key, walk.at * 4, p.threshold, p.scale);
-      ADD_COMPENSATED(vec4, sum, lost, d)
-      ADD_COMPENSATED(vec4, product, product_lost, d * (leaky(load4(x, walk.at), p.slope) - mean))
-      walk_on(walk);
+    uint k = 0;
+    for (; k + 4 <= count; k += 4) {
+      Item a = next_item(walk, key, mean);
+      Item b = next_item(walk, key, mean);
+      Item c = next_item(walk, key, mean);
+      Item d = next_item(walk, key, mean);
+      ADD_COMPENSATED(vec4, sum, lost, (a.dy + b.dy) + (c.dy + d.dy))
+      ADD_COMPENSATED(vec4, product, product_lost, (a.product + b.product) + (c.product + d.product))
+    }
+    for (; k < count; ++k) {
+      Item a = next_item(walk, key, mean);
+      ADD_COMPENSATED(vec4, sum, lost, a.dy)
+      ADD_COMPENSATED(vec4, product, product_lost, a.product)
     }
   }
   uint out_at = ((group * p.blocks + cb) * p.strips + q) * 2;

@@ -71,13 +71,14 @@ struct Caps {
 
   bool subgroup_shuffle = false;
   bool subgroup_arithmetic = false;
-  bool int64 = false;
+  bool int64 = false;  ///< 64-bit integers in shaders, which subgroups exchange too
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
   std::vector<MatrixShape>
       cooperative_matrices;  ///< that kernels can use; empty: none, or a feature is missing
   bool lavapipe = false;  ///< Mesa's driver for CPUs, whose texel fetches outside a view give zeros at no cost
   AccessPath access = AccessPath::kStorage;
   bool row_stores = false;  ///< kernels of subgroups store lane by lane at uniform addresses (row_store.glsl)
+  bool long_work = false;   ///< a choice: kernels may take seconds to compile where that makes them faster
   bool exact_sums = false;  ///< a choice: convolutions keep what their sums round off, several times slower
   KernelFamily kernels = KernelFamily::kAuto;        ///< a choice, for convolutions and matrix products
   WinogradUse winograd = WinogradUse::kWhereFaster;  ///< a choice, of convolutions without exact_sums

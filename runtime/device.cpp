@@ -60,10 +60,12 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
   caps_ = candidates[index].caps;
   if (options.access) {
     if (*options.access == AccessPath::kTexel && !caps_.int64)
-      throw Error("the texel access path needs 64-bit integers in shaders, which " + caps_.name + " lacks");
+      throw Error("the texel access path needs 64-bit integers in shaders and subgroups, which " + caps_.name +
+                  " lacks");
     caps_.access = *options.access;
   }
   caps_.row_stores = options.row_stores.value_or(caps_.row_stores) && caps_.access == AccessPath::kTexel;
+  caps_.long_work = options.long_work;
   caps_.exact_sums = options.exact_sums;
   caps_.kernels = options.kernels;
   if (const std::string why = missing_for(caps_.kernels, caps_); !why.empty()) throw Error(why);
@@ -86,20 +88,30 @@ void Device::create_logical_device() {
   VkPhysicalDeviceFeatures supported{};
   vkGetPhysicalDeviceFeatures(physical_, &supported);
   VkPhysicalDeviceFeatures features{};
-  features.shaderInt64 = supported.shaderInt64;
+  features.shaderInt64 = caps_.int64 ? VK_TRUE : VK_FALSE;
   features.robustBufferAccess = supported.robustBufferAccess;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   info.pEnabledFeatures = &features;
+  std::vector<const char*> extensions;
   CooperativeFeatures cooperative;
   cooperative.enable();
   if (!caps_.cooperative_matrices.empty()) {
     info.pNext = cooperative.chain();
-    info.enabledExtensionCount = static_cast<uint32_t>(CooperativeFeatures::kExtensions.size());
-    info.ppEnabledExtensionNames = CooperativeFeatures::kExtensions.data();
+    extensions.assign(CooperativeFeatures::kExtensions.begin(), CooperativeFeatures::kExtensions.end());
   }
+  VkPhysicalDeviceShaderSubgroupExtendedTypesFeatures exchanged{};
+  exchanged.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SUBGROUP_EXTENDED_TYPES_FEATURES;
+  exchanged.shaderSubgroupExtendedTypes = VK_TRUE;
+  if (caps_.int64) {
+    exchanged.pNext = const_cast<void*>(info.pNext);
+    info.pNext = &exchanged;
+    extensions.push_back(VK_KHR_SHADER_SUBGROUP_EXTENDED_TYPES_EXTENSION_NAME);
+  }
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
   if (instance_.validates())

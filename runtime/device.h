@@ -20,6 +20,7 @@ struct DeviceOptions {
   MessageSink on_message;            ///< loads the validation layer and receives what it says
   std::optional<AccessPath> access;  ///< forces an access path (tests run both)
   std::optional<bool> row_stores;    ///< Caps::row_stores; none: where they are known to be faster
+  bool long_work = false;            ///< Caps::long_work
   bool exact_sums = false;           ///< Caps::exact_sums
   /// Caps::winograd; Error where the device, or exact_sums, can't have what it says.
   WinogradUse winograd = WinogradUse::kWhereFaster;

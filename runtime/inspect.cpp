@@ -124,6 +124,17 @@ void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& 
   read_limits(p.limits, caps);
 }
 
+/// Of a device that has VK_KHR_shader_subgroup_extended_types.
+bool has_int64(VkPhysicalDevice device) {
+  VkPhysicalDeviceShaderSubgroupExtendedTypesFeatures subgroups{};
+  subgroups.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SUBGROUP_EXTENDED_TYPES_FEATURES;
+  VkPhysicalDeviceFeatures2 features{};
+  features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
+  features.pNext = &subgroups;
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  return features.features.shaderInt64 != VK_FALSE && subgroups.shaderSubgroupExtendedTypes != VK_FALSE;
+}
+
 }  // namespace
 
 Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
@@ -141,9 +152,7 @@ Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
       has(extensions, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME) || properties.apiVersion >= VK_API_VERSION_1_2,
       found.caps);
   read_memory(device, found.caps);
-  VkPhysicalDeviceFeatures features{};
-  vkGetPhysicalDeviceFeatures(device, &features);
-  found.caps.int64 = features.shaderInt64 != VK_FALSE;
+  found.caps.int64 = has(extensions, VK_KHR_SHADER_SUBGROUP_EXTENDED_TYPES_EXTENSION_NAME) && has_int64(device);
   found.caps.float_atomic_add = has(extensions, VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);
   const auto& cooperative = CooperativeFeatures::kExtensions;
   if (std::all_of(cooperative.begin(), cooperative.end(), [&](const char* e) { return has(extensions, e); }))

@@ -56,10 +56,11 @@ ConvTile choose_uniform_tile(const ConvWork& work) {
 }
 
 bool row_stores_pay(int64_t iterations, int64_t vectors, const Caps& caps) {
-  // With 3x3 kernels: up to 16 input channels.
-  constexpr int64_t kShortSum = 36;
-  constexpr int64_t kMostVectors = 256;  // of a subgroup; twice as many take a second to compile
-  return caps.row_stores && iterations <= kShortSum && vectors * caps.subgroup_size <= kMostVectors;
+  // With 3x3 kernels: up to 16 input channels, or 128 where the work is long.
+  const int64_t short_sum = caps.long_work ? 288 : 36;
+  // Of a subgroup; 1024 take 0.7 s to compile.
+  const int64_t most_vectors = caps.long_work ? 1024 : 256;
+  return caps.row_stores && iterations <= short_sum && vectors * caps.subgroup_size <= most_vectors;
 }
 
 }  // namespace vkopple

@@ -34,7 +34,8 @@ ConvTile choose_uniform_tile(const ConvWork& work);
 
 /// Whether a direct kernel should store rows (shaders/include/row_store.glsl): their code is long, a dozen
 /// instructions for each of a subgroup's vectors, which the driver compiles and a processor fetches. It pays
-/// where a sum is short. `iterations`: of the kernel's loop; `vectors`: of 4 channels that an invocation makes.
+/// where a sum is short, or Caps::long_work. `iterations`: products of vectors of 4 channels that make a sum;
+/// `vectors`: of 4 channels that an invocation makes.
 bool row_stores_pay(int64_t iterations, int64_t vectors, const Caps& caps);
 
 }  // namespace vkopple

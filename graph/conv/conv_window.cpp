@@ -152,8 +152,8 @@ void record_conv_window(Recorder& recorder, const ConvShape& s, ConvDirection di
   const bool whole =
       sides.out_w % (tile.pixels * sides.phases) == 0 && sides.w == columns * (forward ? s.stride : 1);
   const bool known =
-      operands.accumulate == 0 &&
-      row_stores_pay(s.kernel * s.kernel * push.in4, blocks4(tile.channels) * tile.pixels * sides.phases, caps);
+      operands.accumulate == 0 && row_stores_pay(s.kernel * s.kernel * push.in4 / (sides.phases * sides.phases),
+                                                 blocks4(tile.channels) * tile.pixels * sides.phases, caps);
   const int64_t rows = ceil_divide(sides.out_h, sides.phases);
   const int64_t count = ceil_divide(s.n * rows * push.blocks, caps.subgroup_size) * push.tiles;
   recorder.dispatch("conv_window",

@@ -120,8 +120,8 @@ void store_known(int a, int rows, int first_image, int first_row, int first_bloc
   [[unroll]] for (int o4 = 0; o4 < kOut4; ++o4) {
     bool there = out_block * kOut4 + o4 < p.out4;
     [[unroll]] for (int r = 0; r < kPositions; r += 2) {
-      uvec4 words = ROW_WORDS(y, sum_of(o4, r));
-      uvec4 next = ROW_WORDS(y, sum_of(o4, r + 1));
+      u64vec2 words = ROW_WORDS(y, sum_of(o4, r));
+      u64vec2 next = ROW_WORDS(y, sum_of(o4, r + 1));
       [[unroll]] for (int l = 0; l < kMostLanes; ++l) {
         int to = at[l] + o4 * size + r;
         if (kWhole) {  // which makes p.out_w even

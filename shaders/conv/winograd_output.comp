@@ -35,7 +35,7 @@ vec4[kMade] output_column(vec4 rows[kRead][kMade], int j) {
 // Every lane's tile is found once more for all lanes, from what is known to be uniform (row_store.glsl).
 void store_known(vec4 rows[kRead][kMade], vec4 start, Tile mine) {
   int mine_at = first_output(mine, int(gl_WorkGroupID.x));
-  uvec4 words[kMade][kMade];
+  u64vec2 words[kMade][kMade];
   [[unroll]] for (int j = 0; j < kMade; ++j) {
     vec4 column[kMade] = output_column(rows, j);
     [[unroll]] for (int i = 0; i < kMade; ++i) {

@@ -161,8 +161,10 @@ void run(const Options& options) {
   if (options.precision) config.training.precision = *options.precision;
   require_kernels_suit(options.kernels,
                        options.what == "conv" ? Precision::kFloat32 : config.training.precision);
-  if (options.what != "infer") prefer_wide_vectors();
+  const bool long_work = options.what != "infer";
+  if (long_work) prefer_wide_vectors();
   const Device device({.selector = options.device,
+                       .long_work = long_work,
                        .winograd = options.winograd,
                        .kernels = options.kernels,
                        .tuned = load_tuned_choices});

@@ -98,8 +98,11 @@ void run(const Options& o) {
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
   require_kernels_suit(o.kernels, request.config.training.precision);
   prefer_wide_vectors();
-  const Device device(
-      {.selector = o.device, .winograd = o.winograd, .kernels = o.kernels, .tuned = load_tuned_choices});
+  const Device device({.selector = o.device,
+                       .long_work = true,
+                       .winograd = o.winograd,
+                       .kernels = o.kernels,
+                       .tuned = load_tuned_choices});
   const Interrupt interrupt;
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
   Progress progress(trainer.plan().steps());

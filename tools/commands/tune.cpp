@@ -69,7 +69,7 @@ void run(const Options& o) {
   const Config config = Config::load(o.preset, o.set);
   require_kernels_suit(o.kernels, Precision::kFloat32);
   prefer_wide_vectors();  // as train does
-  DeviceTiming timing({.selector = o.device, .kernels = o.kernels}, o.repeats);
+  DeviceTiming timing({.selector = o.device, .long_work = true, .kernels = o.kernels}, o.repeats);
   const Caps& caps = timing.device().caps();
   const auto file = tuning_file(caps);
   if (file.empty()) throw Error("no cache folder is known for what tuning finds; set XDG_CACHE_HOME or HOME");

@@ -22,7 +22,6 @@ constexpr std::array<uint32_t, 8> kRowDigits{0, 1, 2, 3, 4, 5, 6, 7};
 constexpr uint32_t kRowDigitsAt = 96;
 /// Of shaders/include/unit_rows.glsl.
 constexpr uint32_t kUnitRowsId = 4;
-constexpr uint64_t kRowsOfGroup = 8;
 
 void memory_barrier(VkCommandBuffer buffer, VkPipelineStageFlags from, VkAccessFlags written,
                     VkPipelineStageFlags to, VkAccessFlags used) {
@@ -254,18 +253,29 @@ void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initi
            {static_cast<uint32_t>(columns), static_cast<uint32_t>(rows), 1});
 }
 
-uint64_t Recorder::units_of_rows() const { return uint64_t{caps().subgroup_size} * kRowsOfGroup; }
+uint32_t Recorder::rows_of_group(uint64_t units, const UnitRows& may) const {
+  // A workgroup costs as much as a dozen rows, and 32 rows a quarter of a second to compile. Enough workgroups
+  // to share among threads are worth more.
+  constexpr uint64_t kFewRows = 8, kManyRows = 32, kEnoughGroups = 64;
+  if (!may.allowed || !caps().row_stores || units % 2 != 0) return 0;
+  const auto suits = [&](uint64_t rows, uint64_t groups) {
+    const uint64_t group = rows * caps().subgroup_size;
+    return units >= groups * group && (may.run == 0 || may.run % group == 0);
+  };
+  if (caps().long_work && suits(kManyRows, kEnoughGroups)) return kManyRows;
+  return suits(kFewRows, 1) ? kFewRows : 0;
+}
 
-void Recorder::dispatch_units(std::string_view shader, uint64_t units, bool rows,
+void Recorder::dispatch_units(std::string_view shader, uint64_t units, const UnitRows& may,
                               std::initializer_list<Slice> bindings, const Push& push,
                               const std::vector<uint32_t>& constants) {
-  const uint64_t group = units_of_rows();
-  if (!caps().row_stores || !rows || units % 2 != 0 || units < group)
-    return dispatch_flat(shader, (units + 3) / 4, bindings, push, constants);
+  const uint32_t rows = rows_of_group(units, may);
+  if (rows == 0) return dispatch_flat(shader, (units + 3) / 4, bindings, push, constants);
   std::vector<uint32_t> all{caps().subgroup_size};
   all.insert(all.end(), constants.begin(), constants.end());
   all.resize(kUnitRowsId);
-  all.push_back(1);
+  all.push_back(rows);
+  const uint64_t group = uint64_t{rows} * caps().subgroup_size;
   const uint64_t groups = (units + group - 1) / group;
   const uint64_t columns = std::min<uint64_t>(groups, caps().max_groups[0]);
   dispatch(shader, all, std::span(bindings.begin(), bindings.size()), push,

@@ -43,6 +43,13 @@ class Push {
 
 using Groups = std::array<uint32_t, 3>;
 
+/// Whether a kernel's workgroups may store rows of vec4s, which then must start at even vec4s of what is
+/// written.
+struct UnitRows {
+  bool allowed = false;
+  uint64_t run = 0;  ///< each workgroup's rows must lie in one run of so many units; 0: anywhere
+};
+
 /// When commands went to the device and were waited for.
 struct RunTimes {
   std::chrono::steady_clock::time_point begin;      ///< before the first submission
@@ -128,13 +135,11 @@ class Recorder {
   /// `count` on must return. `constants` start at constant_id 1.
   void dispatch_flat(std::string_view shader, uint64_t count, std::initializer_list<Slice> bindings,
                      const Push& push, const std::vector<uint32_t>& constants = {});
-  /// Runs a kernel of shaders/include/unit_rows.glsl on `units` vec4s or words. rows: its workgroups may store
-  /// rows of vec4s, which then must start at even vec4s of what is written; they do where the device stores
-  /// rows (Caps::row_stores) and units are even and enough.
-  void dispatch_units(std::string_view shader, uint64_t units, bool rows, std::initializer_list<Slice> bindings,
-                      const Push& push, const std::vector<uint32_t>& constants = {});
-  /// The units of a workgroup of such a kernel where it stores rows.
-  uint64_t units_of_rows() const;
+  /// Runs a kernel of shaders/include/unit_rows.glsl on `units` vec4s or words. Its workgroups store rows where
+  /// they may, the device does (Caps::row_stores), and units are even and enough.
+  void dispatch_units(std::string_view shader, uint64_t units, const UnitRows& may,
+                      std::initializer_list<Slice> bindings, const Push& push,
+                      const std::vector<uint32_t>& constants = {});
 
   /// Sets every 32-bit word.
   void fill(const Slice& slice, uint32_t word = 0);
@@ -150,6 +155,8 @@ class Recorder {
   std::unique_ptr<Commands> finish();
 
  private:
+  /// Of dispatch_units; 0: it stores none.
+  uint32_t rows_of_group(uint64_t units, const UnitRows& may) const;
   void begin_buffer();
   void end_buffer();
   void stamp();

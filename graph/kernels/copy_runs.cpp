@@ -33,8 +33,8 @@ void copy_runs(Recorder& recorder, const Slice& from, const Slice& to, const Run
                           .to_begin = u32(r.to_begin / unit),
                           .accumulate = accumulate};
   const bool even = (push.to_stride | push.to_begin) % 2 == 0;
-  const bool rows = wide && even && push.run % recorder.units_of_rows() == 0;
-  recorder.dispatch_units(wide ? "copy_runs.vec4s" : "copy_runs.words", push.units, rows, {from, to, to}, push);
+  recorder.dispatch_units(wide ? "copy_runs.vec4s" : "copy_runs.words", push.units,
+                          {.allowed = wide && even, .run = push.run}, {from, to, to}, push);
 }
 
 }  // namespace vkopple

@@ -16,7 +16,10 @@ constexpr uint32_t kStripsOnGpu = 512;
 constexpr uint32_t kFewestItems = 64;
 constexpr uint32_t kMostItems = 1024;
 constexpr uint32_t kPixelsEach = 16;
-constexpr uint32_t kRowsEach = 8;  ///< of norm_apply where it stores rows; more take longer to compile
+// Rows of a workgroup of norm_apply where it stores rows. A workgroup costs as much as a dozen rows, and 32
+// rows half a second to compile.
+constexpr uint32_t kRowsEach = 8;
+constexpr uint32_t kRowsEachOfLongWork = 32;
 
 uint32_t divide_up(uint32_t a, uint32_t b) { return (a + b - 1) / b; }
 
@@ -136,7 +139,7 @@ void Normalise::dispatch_apply(Recorder& recorder, const char* shader, std::init
   const Caps& caps = recorder.caps();
   const uint32_t lanes = caps.subgroup_size;
   if (caps.row_stores && pixels_ >= lanes && pixels_ % 2 == 0) {
-    const uint32_t rows = std::min(kRowsEach, divide_up(pixels_, lanes));
+    const uint32_t rows = std::min(caps.long_work ? kRowsEachOfLongWork : kRowsEach, divide_up(pixels_, lanes));
     recorder.dispatch(shader, {lanes, drops, rows}, bindings, push,
                       {divide_up(pixels_, lanes * rows), strips_.blocks, samples_});
     return;

@@ -26,7 +26,7 @@ void combine(Recorder& recorder, BinaryKind kind, const Operand& a, const Operan
              uint32_t accumulate) {
   const bool wide = words(to) % 4 == 0;
   const SamePush push{words(to) / (wide ? 4 : 1), accumulate};
-  recorder.dispatch_units(wide ? "binary.same4" : "binary.same", push.units, wide,
+  recorder.dispatch_units(wide ? "binary.same4" : "binary.same", push.units, {wide},
                           {a.slice, b.slice, to.slice, to.slice}, push, {static_cast<uint32_t>(kind)});
 }
 

@@ -26,7 +26,7 @@ Needs LeakyRelu::needs(std::span<const TensorSpec>, const Caps&) const {
 void LeakyRelu::record_forward(Recorder& recorder, const Forward& io) const {
   const bool wide = words(io.y[0]) % 4 == 0;
   const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, 0};
-  recorder.dispatch_units(wide ? "leaky_relu.forward4" : "leaky_relu.forward", push.units, wide,
+  recorder.dispatch_units(wide ? "leaky_relu.forward4" : "leaky_relu.forward", push.units, {wide},
                           {io.x[0].slice, io.y[0].slice}, push);
 }
 
@@ -34,7 +34,7 @@ void LeakyRelu::record_backward(Recorder& recorder, const Backward& io) const {
   const bool wide = words(io.y[0]) % 4 == 0;
   const LeakyReluPush push{words(io.y[0]) / (wide ? 4 : 1), slope_, io.accumulates(0)};
   const Slice dx = io.dx[0].slice;
-  recorder.dispatch_units(wide ? "leaky_relu.backward4" : "leaky_relu.backward", push.units, wide,
+  recorder.dispatch_units(wide ? "leaky_relu.backward4" : "leaky_relu.backward", push.units, {wide},
                           {io.y[0].slice, io.dy[0].slice, dx, dx}, push);
 }
 

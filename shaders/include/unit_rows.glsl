@@ -6,8 +6,8 @@
 //                        known to be uniform; `i` is this lane's unit of it, or beyond the last one
 #if defined(TEXEL) && defined(WIDE)
 #define UNIT_ROWS
-layout(constant_id = 4) const bool kUnitRows = false;
-const int kRowsOfGroup = 8;  // of copies, twice as many take a fifth to a quarter less time, and twice as long to compile
+layout(constant_id = 4) const int kRowsOfGroup = 0;
+const bool kUnitRows = kRowsOfGroup > 0;
 
 // The first unit of the workgroup.
 #define FIRST_UNIT                                                                                                                     \

@@ -2,32 +2,26 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
+#include "workgroup_sum.glsl"
 
 #ifdef STRIP
-// partial[strip][co / 4] = sum of dy over the strip's pixels of one image; strips are numbered through the batch.
-// A workgroup takes one strip of 4 channels: its invocations take every local-size-th pixel, their sums are added as a tree.
+// partial[strip][co / 4] = sum of dy over the strip's pixels, which are a part of one image or some whole images; strips are
+// numbered through the batch. A workgroup takes one strip of 4 channels, its invocations every local-size-th pixel.
 layout(push_constant) uniform Push {
+  uint images;
   uint co4;
-  uint image;  // pixels
+  uint image;         // pixels
+  uint strip_images;  // 1 where image_strips > 1
   uint image_strips;
-  uint strip_pixels;
+  uint strip_pixels;  // of an image
 } p;
 
 READ4(0, dy)
 WRITE4(1, partial)
 
-shared vec4 sums[gl_WorkGroupSize.x];
-
-void main() {
-  uint lane = gl_LocalInvocationID.x;
-  uint o = gl_WorkGroupID.x;
-  uint strip = gl_WorkGroupID.y;
-  uint plane = (strip / p.image_strips * p.co4 + o) * p.image;
-  uint at = strip % p.image_strips * p.strip_pixels;
-  uint end = plane + min(at + p.strip_pixels, p.image);
-  at += plane + lane;
+// Of every step_-th pixel.
+vec4 sum_of(uint at, uint end, uint step_) {
   vec4 sum = vec4(0);
-  uint step_ = gl_WorkGroupSize.x;
   for (; at + 7 * step_ < end; at += 8 * step_) {
     vec4 a = (load4(dy, at) + load4(dy, at + step_)) + (load4(dy, at + 2 * step_) + load4(dy, at + 3 * step_));
     vec4 b = (load4(dy, at + 4 * step_) + load4(dy, at + 5 * step_)) +
@@ -35,13 +29,23 @@ void main() {
     sum += a + b;
   }
   for (; at < end; at += step_) sum += load4(dy, at);
+  return sum;
+}
 
-  sums[lane] = sum;
-  for (uint half_ = step_ / 2; half_ > 0; half_ /= 2) {
-    barrier();
-    if (lane < half_) sums[lane] += sums[lane + half_];
+void main() {
+  uint lane = gl_LocalInvocationID.x;
+  uint o = gl_WorkGroupID.x;
+  uint strip = gl_WorkGroupID.y;
+  uint first_image = strip / p.image_strips * p.strip_images;
+  uint first = strip % p.image_strips * p.strip_pixels;
+  uint end = min(first + p.strip_pixels, p.image);
+  vec4 sum = vec4(0);
+  for (uint n = first_image; n < min(first_image + p.strip_images, p.images); ++n) {
+    uint plane = (n * p.co4 + o) * p.image;
+    sum += sum_of(plane + first + lane, plane + end, gl_WorkGroupSize.x);
   }
-  if (lane == 0) store4(partial, strip * p.co4 + o, sums[0])
+  sum = workgroup_sum(sum);
+  if (lane == 0) store4(partial, strip * p.co4 + o, sum)
 }
 #else
 // db[co] (+)= sum over strips, in order, of partial[strip][co / 4]. One invocation takes 4 channels.

@@ -262,7 +262,7 @@ uint32_t Recorder::rows_of_group(uint64_t units, const UnitRows& may) const {
     const uint64_t group = rows * caps().subgroup_size;
     return units >= groups * group && (may.run == 0 || may.run % group == 0);
   };
-  if (caps().long_work && suits(kManyRows, kEnoughGroups)) return kManyRows;
+  if (caps().long_work && may.tensors == 1 && suits(kManyRows, kEnoughGroups)) return kManyRows;
   return suits(kFewRows, 1) ? kFewRows : 0;
 }
 

@@ -48,6 +48,7 @@ using Groups = std::array<uint32_t, 3>;
 struct UnitRows {
   bool allowed = false;
   uint64_t run = 0;  ///< each workgroup's rows must lie in one run of so many units; 0: anywhere
+  int tensors = 1;   ///< that are stored to: the more, the longer is the code of a row
 };
 
 /// When commands went to the device and were waited for.

@@ -144,6 +144,8 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
     options_.folder.create();
     if (!log) log.emplace(options_.folder.log(), position_.step);
     progress.say(stage_text(planned));
+    if (device_->caps().cpu())
+      progress.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
     while (position_.step < planned.end && !stopped) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
       {

@@ -78,7 +78,7 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
   const Slice v = io.x[kV].slice;
   // Where a factor may say that nothing is to change, nothing is stored by rows.
   recorder.dispatch_units(
-      "adam.apply", push.vectors, {scaled == 0},
+      "adam.apply", push.vectors, {.allowed = scaled == 0, .tensors = 3},
       {io.x[kGradient].slice, io.x[kCorrection].slice, parameters, m, v, scale, parameters, m, v}, push,
       {scaled});
 }

@@ -42,6 +42,11 @@ const Device* family_device(KernelFamily family, bool exact_sums) {
   return device.get();
 }
 
+const Device& long_work_device() {
+  static const Device device({.selector = "", .on_message = fail_test, .long_work = true, .cache_folder = {}});
+  return device;
+}
+
 const Device* plain_stores_device() {
   static const auto device = []() -> std::unique_ptr<Device> {
     if (!test_device().caps().row_stores) return nullptr;

@@ -18,6 +18,8 @@ const Device* family_device(KernelFamily family, bool exact_sums = false);
 /// The same device made to store lane by lane where it would store rows (Caps::row_stores); null where it does
 /// anyway.
 const Device* plain_stores_device();
+/// The same device set up for work that goes on for long (Caps::long_work), as training does.
+const Device& long_work_device();
 /// The same device whose convolutions are made to use Winograd's algorithm wherever it can run; null where it
 /// can't anywhere.
 const Device* winograd_device(WinogradUse use);

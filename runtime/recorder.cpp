@@ -254,7 +254,7 @@ void Recorder::dispatch_flat(std::string_view shader, uint64_t count, std::initi
 }
 
 uint32_t Recorder::rows_of_group(uint64_t units, const UnitRows& may) const {
-  // A workgroup costs as much as a dozen rows, and 32 rows a quarter of a second to compile. Enough workgroups
+  // A workgroup costs as much as nine rows, and 32 rows a quarter of a second to compile. Enough workgroups
   // to share among threads are worth more.
   constexpr uint64_t kFewRows = 8, kManyRows = 32, kEnoughGroups = 64;
   if (!may.allowed || !caps().row_stores || units % 2 != 0) return 0;

@@ -16,7 +16,7 @@ constexpr uint32_t kStripsOnGpu = 512;
 constexpr uint32_t kFewestItems = 64;
 constexpr uint32_t kMostItems = 1024;
 constexpr uint32_t kPixelsEach = 16;
-// Rows of a workgroup of norm_apply where it stores rows. A workgroup costs as much as a dozen rows, and 32
+// Rows of a workgroup of norm_apply where it stores rows. A workgroup costs as much as nine rows, and 32
 // rows half a second to compile.
 constexpr uint32_t kRowsEach = 8;
 constexpr uint32_t kRowsEachOfLongWork = 32;

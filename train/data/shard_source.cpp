@@ -38,9 +38,9 @@ std::array<double, N> coordinates(const JsonView& view) {
 }
 
 /// One triplet of a scene on its way into a batch.
-class SceneReader {
+class ShardScene {
  public:
-  SceneReader(const Sample& sample, const Lens& lens)
+  ShardScene(const Sample& sample, const Lens& lens)
       : sample_(sample), lens_(lens), json_(parse(sample)), view_(json_, sample.where("json")) {
     const double fov = view_["fov"].number();
     if (std::abs(fov - lens.fov) > 1e-6) {
@@ -131,7 +131,7 @@ struct Known {
   bool layers = true, objects = true;
 };
 
-void add_triplet(const SceneReader& scene, const std::array<uint16_t, 3>& frames, TripletBatch& batch,
+void add_triplet(const ShardScene& scene, const std::array<uint16_t, 3>& frames, TripletBatch& batch,
                  Known& known) {
   for (std::size_t k = 0; k < 3; ++k) {
     append(batch.images[k], scene.image(frames[k]).pixels);
@@ -210,7 +210,7 @@ TripletBatch ShardSource::read(uint64_t step) {
     std::set<std::string> wanted{"json", fmt::format("{}.exr", triplet.frames[1])};
     for (const uint16_t frame : triplet.frames) wanted.insert(fmt::format("{}.png", frame));
     const Sample sample = reader_.read(scenes_[triplet.scene], wanted);
-    add_triplet(SceneReader(sample, lens_), triplet.frames, result, known);
+    add_triplet(ShardScene(sample, lens_), triplet.frames, result, known);
   }
   if (!known.layers) {
     result.depth.clear();

@@ -8,6 +8,7 @@ namespace vkopple {
 
 std::string count_line(uint64_t done, uint64_t total, const std::string& things, double seconds) {
   const double rate = seconds > 0 ? static_cast<double>(done) / seconds : 0;
+  if (total == 0) return fmt::format("{} {}", done, things);
   const std::string line = fmt::format("{}/{} {}", done, total, things);
   if (rate == 0) return line;
   const auto left = static_cast<double>(total > done ? total - done : 0);

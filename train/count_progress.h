@@ -8,7 +8,7 @@
 
 namespace vkopple {
 
-/// "120/1000 scenes  12.3 scenes/s  1:12 left".
+/// "120/1000 scenes  12.3 scenes/s  1:12 left"; "120 scenes" where no total is known (0).
 std::string count_line(uint64_t done, uint64_t total, const std::string& things, double seconds);
 
 /// Tells how a long row of equal things gets done. Short work says nothing where there is no terminal; at the

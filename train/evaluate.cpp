@@ -1,6 +1,7 @@
 #include "train/evaluate.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "runtime/error.h"
 #include "train/pictures.h"
@@ -32,8 +33,10 @@ std::vector<LabelledLocation> inferred_locations(std::span<const float> location
   return all;
 }
 
+/// Endlessly far where there are no values.
 Plane<float> plane(std::span<const float> values, int height, int width) {
   Plane<float> out(height, width);
+  std::fill(out.pixels.begin(), out.pixels.end(), std::numeric_limits<float>::infinity());
   std::copy(values.begin(), values.end(), out.pixels.begin());
   return out;
 }
@@ -48,13 +51,14 @@ class Evaluation {
     const auto entities = model_.config().slots + 1;
     const auto truth = part(batch.label, index, count);
     const std::vector<int32_t> labels(truth.begin(), truth.end());
+    const bool has_depth = !batch.depth.empty();
     const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
     const auto true_objects = true_locations(batch, index);
     const auto objects = inferred_locations(part(percepts_.location, index, count));
     scores_.add({.true_labels = labels,
                  .predicted_labels = inferred,
                  .true_depth = part(batch.depth, index, count),
-                 .predicted_depth = part(percepts_.depth, index, count),
+                 .predicted_depth = has_depth ? part(percepts_.depth, index, count) : std::span<const float>{},
                  .true_objects = true_objects,
                  .predicted_objects = objects});
     if (grid_ != nullptr && grid_->size() < grid_rows_) add_row(batch, index, inferred, labels);
@@ -71,6 +75,7 @@ class Evaluation {
     const auto pixels = part(batch.images[1], index, count);
     std::copy(pixels.begin(), pixels.end(), image.pixels.begin());
     for (int32_t& label : labels) --label;  // objects count from 0 in colours, as slots do
+    labels.resize(pixels.size() / 3, -1);   // what is unknown looks like background
     const auto farthest = static_cast<float>(model_.config().max_depth);
     const auto background = static_cast<int32_t>(model_.config().slots);
     const int zoom = zoom_for(batch.height);
@@ -108,9 +113,10 @@ EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t imag
   Evaluation evaluation(model, grid, grid_rows);
   for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
     const TripletBatch batch = source.read(step);
-    if (batch.label.empty() || batch.depth.empty())
+    if (batch.label.empty() && batch.depth.empty())
       throw Error(
-          "the data has no true labels and depth to compare with; use rooms:SEED or shards of vkopple "
+          "the data has neither true labels nor true depth to compare with; use rooms:SEED or shards of "
+          "vkopple "
           "generate");
     if (batch.batch != model.batch()) throw Error("the data's batches don't fit the model's");
     evaluation.see(batch);

@@ -44,15 +44,21 @@ void EvaluationScores::add(const EvaluatedImage& image) {
   if (!std::all_of(image.predicted_depth.begin(), image.predicted_depth.end(), finite)) {
     throw Error("an inferred depth is not a finite number; the model's weights are unusable");
   }
-  const auto ari = ari_foreground(image.true_labels, image.predicted_labels);
-  const auto matches = match_entities(image.true_labels, image.predicted_labels);
+  const bool labelled = !image.true_labels.empty();
+  std::optional<double> ari;
+  std::vector<Match> matches;
+  if (labelled) {
+    ari = ari_foreground(image.true_labels, image.predicted_labels);
+    matches = match_entities(image.true_labels, image.predicted_labels);
+  }
   ++images_;
+  add_depth(image);
+  if (!labelled) return;
   if (!ari) ++skipped_;
   ari_fg_.add(ari);
   if (object_count(image.true_labels) >= 2) ari_fg_multi_.add(ari);
   iou_.add(mean_iou(matches));
   iou_objects_.add(mean_iou_objects(matches));
-  add_depth(image);
   add_locations(image, matches);
 }
 

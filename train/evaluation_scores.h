@@ -18,7 +18,7 @@ struct LabelledLocation {
 
 /// One image with what is true of it and what was inferred. All maps have the same number of pixels.
 struct EvaluatedImage {
-  std::span<const std::int32_t> true_labels;       ///< 0 background, 1.. objects
+  std::span<const std::int32_t> true_labels;       ///< 0 background, 1.. objects; may be empty
   std::span<const std::int32_t> predicted_labels;  ///< slot with the largest mask; background is a slot as well
   std::span<const float> true_depth;  ///< may be empty; what is not above 0 and finite (sky) is left out
   std::span<const float> predicted_depth;

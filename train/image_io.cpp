@@ -287,6 +287,29 @@ DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& sour
   });
 }
 
+std::vector<std::byte> encode_known_exr(const DepthAndIds& layers) {
+  if (layers.ids.pixels.empty()) return encode_depth_exr(layers.depth);
+  if (!layers.depth.pixels.empty()) return encode_exr(layers);
+  const Plane<std::uint32_t>& ids = layers.ids;
+  check_size(ids.height, ids.width, ids.pixels.size(), 1);
+  ImageSpec spec = exr_spec(ids.height, ids.width, 1);
+  spec.set_format(TypeDesc::UINT32);
+  spec.channelnames = {"objectId"};
+  return encode("exr", spec, TypeDesc::UINT32, ids.pixels.data());
+}
+
+DepthAndIds decode_known_exr(std::span<const std::byte> bytes, const std::string& source) {
+  return guarded(source, [&] {
+    Input input(bytes, "exr", source);
+    const bool depth = input.spec().channelindex("Z") >= 0, ids = input.spec().channelindex("objectId") >= 0;
+    if (!depth && !ids) input.fail("it has neither a channel Z nor a channel objectId");
+    DepthAndIds layers;
+    if (depth) layers.depth = input.read_channel<float>("Z", TypeDesc::FLOAT);
+    if (ids) layers.ids = input.read_channel<std::uint32_t>("objectId", TypeDesc::UINT32);
+    return layers;
+  });
+}
+
 void write_png(const fs::path& path, const RgbImage& image) { write_file(path, encode_png(image)); }
 
 void write_png(const fs::path& path, const Plane<std::uint8_t>& plane) { write_file(path, encode_png(plane)); }

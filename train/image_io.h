@@ -42,6 +42,11 @@ Plane<float> decode_depth_exr(std::span<const std::byte> bytes, const std::strin
 std::vector<std::byte> encode_exr(const DepthAndIds& layers);
 DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& source);
 
+/// The same with one of the two channels left out where its plane has no pixels.
+std::vector<std::byte> encode_known_exr(const DepthAndIds& layers);
+/// Channels that the file lacks are planes without pixels; one must be there.
+DepthAndIds decode_known_exr(std::span<const std::byte> bytes, const std::string& source);
+
 /// Whole files, through AtomicFile.
 void write_png(const std::filesystem::path& path, const RgbImage& image);
 void write_png(const std::filesystem::path& path, const Plane<std::uint8_t>& plane);

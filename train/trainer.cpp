@@ -90,7 +90,8 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
   const Lens lens(config_.model);
   Stage stage{.planned = &planned, .source = nullptr, .training = nullptr, .probe = nullptr};
   stage.source =
-      open_triplets(*device_, options_.data, lens, s.rooms, s.batch, position_.seed, Reading::kTraining);
+      open_triplets(*device_, options_.data, lens, s.rooms, s.batch,
+                    {.reading = Reading::kTraining, .seed = position_.seed, .threads = options_.data_threads});
   stage.training =
       std::make_unique<TrainingStep>(*device_, config_, s, store_.groups(), profiler_ && !profiler_->done());
   if (options_.eval_every > 0)

@@ -29,6 +29,7 @@ struct TrainerOptions {
   uint64_t eval_every = 250;           ///< steps between measurements of depth; 0: none
   std::filesystem::path profile;       ///< where a trace (train/trace.h) goes; empty: none
   int profiled_steps = 1;              ///< of the trace, which leaves out the run's first step
+  int data_threads = 2;                ///< that read files ahead
   double seconds_between_saves = 600;  ///< after which latest.safetensors is written anyway
 };
 

@@ -104,6 +104,17 @@ TEST(ImageIo, ExrRoundTripIsExact) {
   EXPECT_EQ(decode_depth_exr(encode_exr(both), "x.exr").pixels, both.depth.pixels);
 }
 
+TEST(ImageIo, ExrHoldsWhatIsKnown) {
+  const DepthAndIds both = layers(5, 7);
+  for (const DepthAndIds& known : {both, DepthAndIds{both.depth, {}}, DepthAndIds{{}, both.ids}}) {
+    const DepthAndIds again = decode_known_exr(encode_known_exr(known), "x.exr");
+    EXPECT_EQ(again.depth.pixels, known.depth.pixels);
+    EXPECT_EQ(again.ids.pixels, known.ids.pixels);
+  }
+  EXPECT_EQ(encode_known_exr(both), encode_exr(both));
+  expect_error([&] { encode_known_exr({}); }, {"can't be written"});
+}
+
 TEST(ImageIo, BytesHoldNoTime) {
   const auto text = [](const Bytes& bytes) {
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -209,6 +220,7 @@ TEST(ImageIo, RefusesOtherExrFiles) {
   write_any(folder / "rgb.exr", 3, OIIO::TypeDesc::HALF, {0, 0, 0}, 1, 1);
   const Bytes rgb = read_file(folder / "rgb.exr", 1 << 20);
   expect_error([&] { decode_exr(rgb, "rgb.exr"); }, {"rgb.exr", "no channel Z"});
+  expect_error([&] { decode_known_exr(rgb, "rgb.exr"); }, {"rgb.exr", "neither a channel Z nor"});
   expect_error([&] { decode_exr(encode_depth_exr(Plane<float>(1, 1)), "d.exr"); },
                {"d.exr", "no channel objectId"});
   expect_error([&] { decode_exr(encode_png(picture(2, 2)), "p.exr"); }, {"p.exr"});

@@ -62,5 +62,26 @@ TEST(Resize, RefusesNoPixels) {
   test::expect_error([] { resize(RgbImage(), 1, 1); }, {"0x0"});
 }
 
+TEST(Resize, AWindowMayCutPixels) {
+  RgbImage image(1, 4);
+  image.pixels = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+  expect_near(resize(image, {0, 0.5, 1, 3}, 1, 2).pixels,
+              {(0.5f * 0 + 1) / 1.5f, (2 + 0.5f * 3) / 1.5f, (0.5f * 4 + 5) / 1.5f, (6 + 0.5f * 7) / 1.5f,
+               (0.5f * 8 + 9) / 1.5f, (10 + 0.5f * 11) / 1.5f});
+  expect_near(resize(image, {0, 1, 1, 2}, 1, 4).pixels,
+              {0.75f, 1.25f, 1.75f, 2.25f, 4.75f, 5.25f, 5.75f, 6.25f, 8.75f, 9.25f, 9.75f, 10.25f});
+  Plane<std::uint32_t> labels(1, 4);
+  labels.pixels = {7, 8, 9, 3};
+  EXPECT_EQ(resize_nearest(labels, {0, 1.5, 1, 2.5}, 1, 2).pixels, (std::vector<std::uint32_t>{9, 3}));
+  for (const Window& outside :
+       {Window{0, 2, 1, 3}, Window{-1, 0, 1, 1}, Window{0, 0, 1, 0}, Window{0, 0, 2, 1}})
+    test::expect_error([&] { resize(image, outside, 1, 1); }, {"an image of 1x4"});
+}
+
+TEST(ResizeDepth, TakesTheNearestWhereSomeIsUnknown) {
+  expect_near(resize_depth(plane(1, 4, {1, 3, 5, 7}), 1, 2).pixels, {2, 6});
+  expect_near(resize_depth(plane(1, 4, {1, 3, 0, 7}), 1, 2).pixels, {3, 7});
+}
+
 }  // namespace
 }  // namespace vkopple

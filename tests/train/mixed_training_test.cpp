@@ -61,8 +61,8 @@ class Training {
       : config_(std::move(config)),
         stage_(config_.stages().at(stage)),
         store_(test_device(), config_.model, config_.training.precision),
-        source_(open_triplets(test_device(), "rooms:5", Lens(config_.model), stage_.rooms, stage_.batch, kSeed,
-                              Reading::kTraining)),
+        source_(open_triplets(test_device(), "rooms:5", Lens(config_.model), stage_.rooms, stage_.batch,
+                              {.seed = kSeed})),
         training_(test_device(), config_, stage_, store_.groups()) {
     store_.initialise(kSeed);
   }

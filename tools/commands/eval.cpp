@@ -41,7 +41,8 @@ std::unique_ptr<TripletSource> open_data(const Options& o, const Device& device,
   if (o.data == model.position.data)
     spdlog::warn("the model was trained on {}, so this tells nothing of what it does with new images", o.data);
   const RoomsConfig rooms = o.stage.empty() ? model.rooms() : rooms_of_stage(model.config, o.stage);
-  return open_triplets(device, o.data, Lens(model.config.model), rooms, batch, 0, Reading::kEvaluation);
+  return open_triplets(device, o.data, Lens(model.config.model), rooms, batch,
+                       {.reading = Reading::kEvaluation, .scenes = static_cast<uint64_t>(o.images)});
 }
 
 void write_grid(const Options& o, std::vector<std::vector<RgbImage>> grid, bool objects) {
@@ -82,9 +83,11 @@ void add_eval(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   command->add_option("model", o->model, "A checkpoint")->required();
   command
-      ->add_option("--data", o->data,
-                   "rooms:SEED draws rooms with the options that the model carries; or a shard, or a folder of "
-                   "shards, of which the middle frame of every scene is scored")
+      ->add_option(
+          "--data", o->data,
+          "rooms:SEED draws rooms with the options that the model carries; or a shard, a folder of shards, or "
+          "a data set of another format that vkopple convert knows, of which the middle frame of every "
+          "scene is scored")
       ->required();
   command->add_option("--images", o->images, "How many, if there are as many")
       ->capture_default_str()

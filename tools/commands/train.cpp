@@ -38,6 +38,7 @@ struct Options {
   uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
   std::string profile;
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
+  int data_threads = TrainerOptions{RunFolder("")}.data_threads;
   bool resume = false;
   WinogradUse winograd = WinogradUse::kWhereFaster;
 };
@@ -95,6 +96,7 @@ void run(const Options& o) {
   trainer_options.eval_every = o.eval_every;
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
+  trainer_options.data_threads = o.data_threads;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
   require_kernels_suit(o.kernels, request.config.training.precision);
   prefer_wide_vectors();
@@ -124,8 +126,10 @@ void add_train(CLI::App& app) {
   const auto o = std::make_shared<Options>();
   command->add_option("config", o->config, "A configuration file or a preset: full, small, tiny");
   add_set_option(*command, o->set);
-  command->add_option("--data", o->data,
-                      "rooms:SEED draws new rooms at every step; or a shard, or a folder of shards");
+  command->add_option(
+      "--data", o->data,
+      "rooms:SEED draws new rooms at every step; or a shard, a folder of shards, or a data set of "
+      "another format that vkopple convert knows");
   command->add_option("--out", o->out, "Folder of the run: checkpoints and log.jsonl")->required();
   // Negative numbers would wrap around.
   command
@@ -154,6 +158,11 @@ void add_train(CLI::App& app) {
   command->add_option("--profile-steps", o->profiled_steps, "Steps of the trace, which leaves out the first")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--data-threads", o->data_threads,
+                   "Threads that read files ahead, each a batch; changes nothing in what is learned")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
   command->add_flag("--resume", o->resume,
                     "Go on with the run in --out, to the same bytes as if it had never stopped");
   command->add_flag_callback(

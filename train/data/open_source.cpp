@@ -7,7 +7,9 @@
 #include <system_error>
 
 #include "runtime/error.h"
+#include "train/data/load_scenes.h"
 #include "train/data/read_ahead.h"
+#include "train/formats/scene_reader.h"
 #include "train/rooms/room_source.h"
 
 namespace vkopple {
@@ -22,18 +24,27 @@ uint64_t parse_seed(std::string_view text) {
   throw UsageError(fmt::format("rooms:{}: the seed must be a whole number from 0 to {}", text, UINT64_MAX));
 }
 
+/// Shards are read when they are needed, other formats at once.
+std::unique_ptr<SampleStore> open_store(const std::filesystem::path& path, const Lens& lens,
+                                        const LoadLimits& limits) {
+  if (detect_format(path).name == "shards") return std::make_unique<ShardStore>(path);
+  return load_scenes(path, lens, limits);
+}
+
 }  // namespace
 
 std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
-                                             const RoomsConfig& rooms, int batch, uint64_t seed,
-                                             Reading reading) {
-  if (data.starts_with(kRooms)) {
+                                             const RoomsConfig& rooms, int batch,
+                                             const SourceOptions& options) {
+  if (data.starts_with(kRooms))
     return std::make_unique<RoomSource>(device, lens, rooms, batch,
                                         parse_seed(std::string_view(data).substr(kRooms.size())));
-  }
-  auto shards = std::make_unique<ShardSource>(data, lens, batch, seed, reading);
-  if (reading == Reading::kTraining) return std::make_unique<ReadAhead>(std::move(shards));
-  return shards;
+  const LoadLimits limits{.scenes = options.reading == Reading::kEvaluation ? options.scenes : UINT64_MAX};
+  auto source = std::make_unique<ShardSource>(open_store(data, lens, limits), data, lens, batch, options.seed,
+                                              options.reading);
+  if (options.reading == Reading::kTraining)
+    return std::make_unique<ReadAhead>(std::move(source), options.threads);
+  return source;
 }
 
 }  // namespace vkopple

@@ -12,11 +12,18 @@ namespace vkopple {
 
 class Device;
 
+/// Of data in files.
+struct SourceOptions {
+  Reading reading = Reading::kTraining;
+  uint64_t seed = 0;             ///< of the order of training
+  int threads = 2;               ///< that read ahead in training
+  uint64_t scenes = UINT64_MAX;  ///< how many evaluation needs at most
+};
+
 /// What `--data` names: "rooms:SEED" draws new rooms at every step, anything else is a shard or a folder of
-/// them, read ahead for training. `seed`: of the order in which shards are read then. Throws UsageError for a
-/// seed of rooms that is no number.
+/// them, or a data set of another known format, which is taken into memory. Throws UsageError for a seed of
+/// rooms that is no number.
 std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
-                                             const RoomsConfig& rooms, int batch, uint64_t seed,
-                                             Reading reading);
+                                             const RoomsConfig& rooms, int batch, const SourceOptions& options);
 
 }  // namespace vkopple

@@ -3,18 +3,22 @@
 namespace vkopple {
 
 TripletBatch ReadAhead::ready(uint64_t step) {
-  if (ahead_.valid()) {
-    std::future<TripletBatch> ahead = std::move(ahead_);
-    if (ahead_step_ == step) return ahead.get();
-    ahead.wait();  // nobody wants it, but it holds the source
+  const auto found = ahead_.find(step);
+  if (found == ahead_.end()) {
+    ahead_.clear();  // waits for what nobody wants
+    return source_->read_shown(step);
   }
-  return source_->read(step);
+  std::future<TripletBatch> batch = std::move(found->second);
+  ahead_.erase(ahead_.begin(), std::next(found));
+  return batch.get();
 }
 
-TripletBatch ReadAhead::read(uint64_t step) {
+TripletBatch ReadAhead::read_shown(uint64_t step) {
   TripletBatch batch = ready(step);
-  ahead_step_ = step + 1;
-  ahead_ = std::async(std::launch::async, [this, next = step + 1] { return source_->read(next); });
+  for (uint64_t next = step + 1; next <= step + static_cast<uint64_t>(threads_); ++next) {
+    if (!ahead_.contains(next))
+      ahead_.emplace(next, std::async(std::launch::async, [this, next] { return source_->read_shown(next); }));
+  }
   return batch;
 }
 

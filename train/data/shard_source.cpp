@@ -7,216 +7,210 @@
 #include <numeric>
 #include <set>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "runtime/error.h"
-#include "train/image_io.h"
-#include "train/json_io.h"
+#include "train/formats/shard_scene.h"
 #include "train/random.h"
 
 namespace vkopple {
 namespace {
 
-constexpr uint32_t kMostObjects = 1000;
-constexpr double kFarthest = 1e6;  // of any coordinate: floats are exact enough below
-
-bool has_part(const SamplePlace& place, const std::string& extension) {
-  return std::any_of(place.parts.begin(), place.parts.end(),
-                     [&](const auto& part) { return part.extension == extension; });
-}
-
-template <std::size_t N>
-std::array<double, N> coordinates(const JsonView& view) {
-  const std::vector<double> values = view.numbers(N);
-  std::array<double, N> result{};
-  for (std::size_t i = 0; i < N; ++i) {
-    if (std::abs(values[i]) > kFarthest) view.fail(fmt::format("numbers up to {}", kFarthest));
-    result[i] = values[i];
-  }
-  return result;
-}
-
-/// One triplet of a scene on its way into a batch.
-class ShardScene {
- public:
-  ShardScene(const Sample& sample, const Lens& lens)
-      : sample_(sample), lens_(lens), json_(parse(sample)), view_(json_, sample.where("json")) {
-    const double fov = view_["fov"].number();
-    if (std::abs(fov - lens.fov) > 1e-6) {
-      throw Error(fmt::format("{}: fov is {} and the model's {}; give a data set of the same angle of view",
-                              sample.where("json"), fov, lens.fov));
-    }
-  }
-
-  RgbImage image(int frame) const {
-    const std::string name = fmt::format("{}.png", frame);
-    RgbImage image = decode_png(sample_.part(name), sample_.where(name));
-    check_sides(image.height, image.width, name);
-    return resize(image, lens_.height, lens_.width);
-  }
-
-  bool has_layers(int frame) const { return sample_.parts.contains(fmt::format("{}.exr", frame)); }
-
-  DepthAndIds layers(int frame) const {
-    const std::string name = fmt::format("{}.exr", frame);
-    const DepthAndIds stored = decode_exr(sample_.part(name), sample_.where(name));
-    check_sides(stored.depth.height, stored.depth.width, name);
-    const bool sound = std::all_of(stored.depth.pixels.begin(), stored.depth.pixels.end(),
-                                   [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
-    if (!sound)
-      throw Error(fmt::format("{}: Z is negative, not a number or over {}; generate it again",
-                              sample_.where(name), kFarthest));
-    const uint32_t most = *std::max_element(stored.ids.pixels.begin(), stored.ids.pixels.end());
-    if (most > kMostObjects)
-      throw Error(
-          fmt::format("{}: objectId is {}; at most {} are read", sample_.where(name), most, kMostObjects));
-    return {resize(stored.depth, lens_.height, lens_.width),
-            resize_nearest(stored.ids, lens_.height, lens_.width)};
-  }
-
-  std::array<double, 6> camera(int frame) const { return coordinates<6>(frame_view(frame)["camera"]); }
-
-  bool has_objects(int frame) const { return frame_view(frame).contains("objects"); }
-
-  /// `ids` at the model's size.
-  std::vector<ObjectTruth> objects(int frame, const Plane<uint32_t>& ids) const {
-    const JsonView listed = frame_view(frame)["objects"];
-    std::vector<ObjectTruth> truths;
-    for (std::size_t i = 0; i < listed.size(); ++i)
-      truths.push_back({coordinates<3>(listed[i]["location_in_camera"]), 0});
-    for (const uint32_t id : ids.pixels) {
-      if (id > truths.size()) {
-        throw Error(fmt::format("{}: objectId {} is not among the {} objects of the JSON",
-                                sample_.where(fmt::format("{}.exr", frame)), id, truths.size()));
-      }
-      if (id > 0) ++truths[id - 1].pixels;
-    }
-    return truths;
-  }
-
- private:
-  static Json parse(const Sample& sample) {
-    const std::vector<std::byte>& bytes = sample.part("json");
-    return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, sample.where("json"));
-  }
-
-  JsonView frame_view(int frame) const {
-    const JsonView frames = view_["frames"];
-    if (frames.size() <= static_cast<std::size_t>(frame))
-      frames.fail(fmt::format("a list of more than {} frames", frame));
-    return frames[static_cast<std::size_t>(frame)];
-  }
-
-  void check_sides(int height, int width, const std::string& name) const {
-    if (int64_t{height} * lens_.width == int64_t{width} * lens_.height) return;
-    throw Error(fmt::format(
-        "{}: {} x {} pixels have not the model's ratio of {} x {}; generate a data set of that shape",
-        sample_.where(name), width, height, lens_.width, lens_.height));
-  }
-
-  const Sample& sample_;
-  const Lens& lens_;
-  Json json_;
-  JsonView view_;
-};
+constexpr std::size_t kOrdersKept = 2;  // threads that read ahead cross the border of two epochs
 
 template <class T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-/// Whether every triplet so far had depth and labels, and whether it had objects.
-struct Known {
-  bool layers = true, objects = true;
+/// One triplet of a scene on its way into a batch.
+class TripletScene {
+ public:
+  TripletScene(const Sample& sample, const Lens& lens) : scene_(sample), lens_(lens) {}
+
+  RgbImage image(int frame) const {
+    const RgbImage image = scene_.image(frame);
+    check_sides(image.height, image.width, fmt::format("{}.png", frame));
+    return resize(image, lens_.height, lens_.width);
+  }
+
+  /// The angle of view is of no matter where there is no camera: then only what a picture shows is looked at.
+  std::optional<CameraPose> camera(int frame) const {
+    const auto camera = scene_.camera(frame);
+    if (!camera || std::abs(scene_.fov() - lens_.fov) <= 1e-6) return camera;
+    throw Error(fmt::format(
+        "{}: fov is {} and the model's {}; give a data set of the same angle of view, or set model.fov",
+        json_name(), scene_.fov(), lens_.fov));
+  }
+
+  CameraPose required_camera(int frame) const {
+    if (const auto known = camera(frame)) return *known;
+    throw Error(fmt::format("{}: frame {} has no camera pose, which training needs", json_name(), frame));
+  }
+
+  /// At the model's size. Planes of what is unknown have no pixels.
+  DepthAndIds layers(int frame) const {
+    DepthAndIds known;
+    if (!scene_.has_layers(frame)) return known;
+    known = scene_.layers(frame);
+    if (!known.depth.pixels.empty()) {
+      check_sides(known.depth.height, known.depth.width, exr(frame));
+      known.depth = resize_depth(known.depth, lens_.height, lens_.width);
+    }
+    if (!known.ids.pixels.empty()) {
+      check_sides(known.ids.height, known.ids.width, exr(frame));
+      known.ids = resize_nearest(known.ids, lens_.height, lens_.width);
+    }
+    return known;
+  }
+
+  /// Objects have places in the camera's frame only where there is a camera.
+  bool has_objects(int frame) const { return scene_.has_objects(frame) && scene_.camera(frame); }
+
+  /// `ids` at the model's size.
+  std::vector<ObjectTruth> objects(int frame, const Plane<uint32_t>& ids) const {
+    std::vector<ObjectTruth> truths;
+    for (const auto& location : scene_.locations_in_camera(frame)) truths.push_back({location, 0});
+    for (const uint32_t id : ids.pixels) {
+      if (id > truths.size())
+        throw Error(fmt::format("{}: objectId {} is not among the {} objects of the JSON",
+                                scene_.sample().where(exr(frame)), id, truths.size()));
+      if (id > 0) ++truths[id - 1].pixels;
+    }
+    return truths;
+  }
+
+ private:
+  std::string json_name() const { return scene_.sample().where("json"); }
+  static std::string exr(int frame) { return fmt::format("{}.exr", frame); }
+
+  void check_sides(int height, int width, const std::string& name) const {
+    if (int64_t{height} * lens_.width == int64_t{width} * lens_.height) return;
+    throw Error(fmt::format(
+        "{}: {} x {} pixels have not the model's ratio of {} x {}; crop them by vkopple convert, or "
+        "give a data set of that shape",
+        scene_.sample().where(name), width, height, lens_.width, lens_.height));
+  }
+
+  ShardScene scene_;
+  const Lens& lens_;
 };
 
-void add_triplet(const ShardScene& scene, const std::array<uint16_t, 3>& frames, TripletBatch& batch,
-                 Known& known) {
+/// What every triplet so far had.
+struct Known {
+  bool cameras = true, depth = true, ids = true, objects = true;
+};
+
+void add_images(const TripletScene& scene, const std::array<uint16_t, 3>& frames, TripletBatch& batch) {
+  for (std::size_t k = 0; k < 3; ++k) append(batch.images[k], scene.image(frames[k]).pixels);
+}
+
+void add_cameras(const TripletScene& scene, const std::array<uint16_t, 3>& frames, bool required,
+                 TripletBatch& batch, Known& known) {
   for (std::size_t k = 0; k < 3; ++k) {
-    append(batch.images[k], scene.image(frames[k]).pixels);
-    for (const double number : scene.camera(frames[k])) batch.poses[k].push_back(static_cast<float>(number));
+    const auto camera = required ? scene.required_camera(frames[k]) : scene.camera(frames[k]);
+    known.cameras = known.cameras && camera;
+    for (const double number : camera.value_or(CameraPose{}))
+      batch.poses[k].push_back(static_cast<float>(number));
   }
-  const int middle = frames[1];
-  known.layers = known.layers && scene.has_layers(middle);
-  known.objects = known.objects && known.layers && scene.has_objects(middle);
-  if (!known.layers) return;
+}
+
+void add_truth(const TripletScene& scene, int middle, TripletBatch& batch, Known& known) {
   const DepthAndIds layers = scene.layers(middle);
+  known.depth = known.depth && !layers.depth.pixels.empty();
+  known.ids = known.ids && !layers.ids.pixels.empty();
+  known.objects = known.objects && known.ids && scene.has_objects(middle);
   append(batch.depth, layers.depth.pixels);
   append(batch.label, layers.ids.pixels);
   if (known.objects) batch.objects.push_back(scene.objects(middle, layers.ids));
 }
 
+/// What some triplets lack is left out of all.
+void keep_known(const Known& known, TripletBatch& batch) {
+  if (!known.cameras)
+    for (auto& poses : batch.poses) poses.clear();
+  if (!known.depth) batch.depth.clear();
+  if (!known.ids) batch.label.clear();
+  if (!known.objects) batch.objects.clear();
+}
+
 }  // namespace
 
-ShardSource::ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed,
-                         Reading reading)
-    : reader_(path), lens_(lens), batch_(batch), seed_(seed), reading_(reading) {
+ShardSource::ShardSource(std::unique_ptr<SampleStore> store, const std::filesystem::path& path,
+                         const Lens& lens, int batch, uint64_t seed, Reading reading)
+    : store_(std::move(store)), lens_(lens), batch_(batch), seed_(seed), reading_(reading) {
   find_triplets();
-  if (triplets_.empty()) {
-    throw Error(fmt::format("{}: no scene of three frames or more (KEY.0.png, KEY.1.png, ...); check the path",
-                            path.string()));
-  }
+  if (!triplets_.empty()) return;
+  throw Error(fmt::format("{}: no scene of {} (KEY.0.png, KEY.1.png, ...); check the path", path.string(),
+                          reading == Reading::kTraining ? "three frames or more" : "any frames"));
 }
 
 void ShardSource::find_triplets() {
-  while (const auto place = reader_.next_place()) add_scene(*place);
+  for (std::size_t scene = 0; scene < store_->size(); ++scene) add_scene(scene);
   if (triplets_.size() > UINT32_MAX)
     throw Error(fmt::format("{} triplets are too many; split the data set", triplets_.size()));
 }
 
-void ShardSource::add_scene(const SamplePlace& place) {
+void ShardSource::add_scene(std::size_t scene) {
   int frames = 0;
-  while (has_part(place, fmt::format("{}.png", frames))) ++frames;
-  const auto scene = static_cast<uint32_t>(scenes_.size());
-  scenes_.push_back(place);
+  while (store_->has(scene, fmt::format("{}.png", frames))) ++frames;
   const auto keep = [&](int a, int b, int c) {
-    triplets_.push_back(
-        {scene, {static_cast<uint16_t>(a), static_cast<uint16_t>(b), static_cast<uint16_t>(c)}});
+    triplets_.push_back({static_cast<uint32_t>(scene),
+                         {static_cast<uint16_t>(a), static_cast<uint16_t>(b), static_cast<uint16_t>(c)}});
   };
   if (reading_ == Reading::kEvaluation) {
-    if (frames >= 3) keep((frames - 1) / 2 - 1, (frames - 1) / 2, (frames - 1) / 2 + 1);
+    const int middle = (frames - 1) / 2;
+    if (frames > 0) keep(std::max(middle - 1, 0), middle, std::min(middle + 1, frames - 1));
     return;
   }
   for (const auto& [a, b, c] : strided_triplets(frames)) keep(a, b, c);
 }
 
-void ShardSource::shuffle(uint64_t epoch) {
-  order_.resize(triplets_.size());
-  std::iota(order_.begin(), order_.end(), 0U);
+std::shared_ptr<const ShardSource::Order> ShardSource::order(uint64_t epoch) {
+  const std::lock_guard lock(orders_mutex_);
+  if (const auto found = orders_.find(epoch); found != orders_.end()) return found->second;
+  const auto order = std::make_shared<Order>(triplets_.size());
+  std::iota(order->begin(), order->end(), 0U);
   Random random(seed_, epoch);
-  for (std::size_t left = order_.size(); left > 1; --left) {
-    std::swap(order_[left - 1], order_[random.below(static_cast<uint32_t>(left))]);
-  }
-  order_epoch_ = epoch;
+  for (std::size_t left = order->size(); left > 1; --left)
+    std::swap((*order)[left - 1], (*order)[random.below(static_cast<uint32_t>(left))]);
+  orders_[epoch] = order;
+  if (orders_.size() > kOrdersKept)
+    orders_.erase(orders_.begin()->first == epoch ? std::prev(orders_.end()) : orders_.begin());
+  return order;
 }
 
-const ShardSource::Triplet& ShardSource::choose(uint64_t step, uint64_t element) {
+std::vector<ShardSource::Triplet> ShardSource::choose(uint64_t step) {
   const uint64_t count = triplets_.size(), batch = static_cast<uint64_t>(batch_);
-  if (reading_ == Reading::kEvaluation) return triplets_[(step * batch + element) % count];
+  std::vector<Triplet> chosen;
+  if (reading_ == Reading::kEvaluation) {
+    for (uint64_t i = 0; i < batch; ++i) chosen.push_back(triplets_[(step * batch + i) % count]);
+    return chosen;
+  }
   const uint64_t steps = std::max<uint64_t>(count / batch, 1);  // of an epoch
-  if (step / steps != order_epoch_) shuffle(step / steps);
-  return triplets_[order_[(step % steps * batch + element) % count]];
+  const auto epoch_order = order(step / steps);
+  for (uint64_t i = 0; i < batch; ++i)
+    chosen.push_back(triplets_[(*epoch_order)[(step % steps * batch + i) % count]]);
+  return chosen;
 }
 
-TripletBatch ShardSource::read(uint64_t step) {
+TripletBatch ShardSource::read(uint64_t step, bool truth) {
   TripletBatch result;
   result.batch = batch_;
   result.height = lens_.height;
   result.width = lens_.width;
   Known known;
-  for (uint64_t element = 0; element < static_cast<uint64_t>(batch_); ++element) {
-    const Triplet& triplet = choose(step, element);
-    std::set<std::string> wanted{"json", fmt::format("{}.exr", triplet.frames[1])};
+  for (const Triplet& triplet : choose(step)) {
+    std::set<std::string> wanted{"json"};
+    if (truth) wanted.insert(fmt::format("{}.exr", triplet.frames[1]));
     for (const uint16_t frame : triplet.frames) wanted.insert(fmt::format("{}.png", frame));
-    const Sample sample = reader_.read(scenes_[triplet.scene], wanted);
-    add_triplet(ShardScene(sample, lens_), triplet.frames, result, known);
+    const Sample sample = store_->read(triplet.scene, wanted);
+    const TripletScene scene(sample, lens_);
+    add_images(scene, triplet.frames, result);
+    add_cameras(scene, triplet.frames, reading_ == Reading::kTraining, result, known);
+    if (truth) add_truth(scene, triplet.frames[1], result, known);
   }
-  if (!known.layers) {
-    result.depth.clear();
-    result.label.clear();
-  }
-  if (!known.objects) result.objects.clear();
+  keep_known(known, result);
   return result;
 }
 

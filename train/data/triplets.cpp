@@ -23,7 +23,7 @@ void TripletBatch::reverse(int index) {
 }
 
 TripletBatch TripletSource::show(uint64_t step, const std::vector<bool>& reversed, int /*first_frame*/) {
-  TripletBatch batch = read(step);
+  TripletBatch batch = read_shown(step);
   for (int i = 0; i < batch.batch; ++i)
     if (reversed.at(static_cast<std::size_t>(i))) batch.reverse(i);
   return batch;

@@ -15,14 +15,14 @@ struct ObjectTruth {
   uint64_t pixels = 0;               ///< that show it, by their centres; 0: out of sight
 };
 
-/// A batch of triplets of frames. Truth is known of made data only; what is unknown is empty.
+/// A batch of triplets of frames. What is unknown of one of them is empty.
 struct TripletBatch {
   int batch = 0, height = 0, width = 0;
   std::array<std::vector<float>, 3>
       images;   ///< a frame each: (batch, 3, height, width) red, green, blue in [0, 1]
   Slice drawn;  ///< where images were left on the device, which `images` lacks then: a frame behind the other
   std::array<std::vector<float>, 3>
-      poses;                    ///< a frame each: (batch, 6) x, y, z, yaw, pitch, roll of the camera
+      poses;  ///< a frame each: (batch, 6) x, y, z, yaw, pitch, roll of the camera; unknown in evaluation only
   std::vector<float> depth;     ///< (batch, height, width) of the middle frame, Euclidean; empty where unknown
   std::vector<uint32_t> label;  ///< likewise: 0 background, i + 1 object i; empty where unknown
   std::vector<std::vector<ObjectTruth>> objects;  ///< of each triplet; empty where unknown
@@ -36,6 +36,8 @@ class TripletSource {
  public:
   virtual ~TripletSource() = default;
   virtual TripletBatch read(uint64_t step) = 0;
+  /// The same batch; truth only by chance.
+  virtual TripletBatch read_shown(uint64_t step) { return read(step); }
   /// The same batch as training takes it: triplet i backwards in time where `reversed[i]`, truth and the images
   /// of frames before `first_frame` only by chance. What is drawn may be left on the device, valid until the
   /// next call: frames `first_frame` to 2.

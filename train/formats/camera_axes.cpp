@@ -82,6 +82,17 @@ CameraPose pose_of(const Vector& position, const Turn& turn, CameraAxes camera, 
 
 }  // namespace
 
+std::map<std::string, CameraAxes> camera_axes_by_name() {
+  return {{"own", CameraAxes::kOwn},
+          {"optical", CameraAxes::kOptical},
+          {"graphics", CameraAxes::kGraphics},
+          {"body", CameraAxes::kBody}};
+}
+
+std::map<std::string, WorldAxes> world_axes_by_name() {
+  return {{"z-up", WorldAxes::kZUp}, {"y-up", WorldAxes::kYUp}, {"y-down", WorldAxes::kYDown}};
+}
+
 Vector to_own_world(const Vector& point, WorldAxes world) {
   switch (world) {
     case WorldAxes::kZUp:

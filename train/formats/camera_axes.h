@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string>
 
 #include "models/camera.h"
 #include "train/image.h"
@@ -21,6 +23,10 @@ enum class WorldAxes {
   kYUp,    ///< right-handed: x, y, z become x, -z, y
   kYDown,  ///< right-handed, as a first camera of optical axes sees it: x, y, z become x, z, -y
 };
+
+/// By the names that users give them: own, optical, graphics, body; z-up, y-up, y-down.
+std::map<std::string, CameraAxes> camera_axes_by_name();
+std::map<std::string, WorldAxes> world_axes_by_name();
 
 /// A point or direction of another's world in ours.
 std::array<double, 3> to_own_world(const std::array<double, 3>& point, WorldAxes world);

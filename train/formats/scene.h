@@ -23,7 +23,7 @@ struct PlacedObject {
 
 /// A frame and what is known of it. All planes of a scene's frames have the size of the scene's images.
 struct SceneFrame {
-  /// 8-bit values v are v / 255, which writing as PNG gives back exactly.
+  /// 8-bit values v are v / 255, rounded; writing as PNG gives them back exactly.
   RgbImage image;
   /// Camera to world, x, y, z, yaw, pitch, roll: Rz(yaw) Rx(pitch) Ry(roll). Single images have none.
   std::optional<CameraPose> camera;

@@ -15,20 +15,24 @@ namespace {
 struct Calls {
   std::atomic<int> count{0};
   std::atomic<int> running{0};
-  std::atomic<bool> together{false};
+  std::atomic<int> most_together{0};
 };
 
-/// Gives batches of as many triplets as the step's number; has none from step 5 on.
+/// Gives batches of as many triplets as the step's number, later steps sooner; has none from step 20 on.
 class Counting : public TripletSource {
  public:
   explicit Counting(Calls& calls) : calls_(&calls) {}
 
-  TripletBatch read(uint64_t step) override {
-    if (++calls_->running > 1) calls_->together = true;
+  TripletBatch read(uint64_t /*step*/) override { throw Error("read ahead is what is shown"); }
+  TripletBatch read_shown(uint64_t step) override {
+    const int running = ++calls_->running;
+    for (int most = calls_->most_together;
+         most < running && !calls_->most_together.compare_exchange_weak(most, running);) {
+    }
     ++calls_->count;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(step % 2 == 0 ? 4 : 1));
     --calls_->running;
-    if (step >= 5) throw Error("nothing there");
+    if (step >= 20) throw Error("nothing there");
     TripletBatch batch;
     batch.batch = static_cast<int>(step);
     return batch;
@@ -39,37 +43,48 @@ class Counting : public TripletSource {
   Calls* calls_;
 };
 
-class ReadAheadTest : public testing::Test {
+void expect_calls(const Calls& calls, int count) {
+  for (int i = 0; i < 2000 && calls.count < count; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(calls.count, count);
+}
+
+class ReadAheadTest : public testing::TestWithParam<int> {
  protected:
-  void expect_calls(int count) const {
-    for (int i = 0; i < 2000 && calls_.count < count; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    EXPECT_EQ(calls_.count, count);
-  }
+  int threads() const { return GetParam(); }
 
   Calls calls_;
-  ReadAhead source_{std::make_unique<Counting>(calls_)};
+  ReadAhead source_{std::make_unique<Counting>(calls_), GetParam()};
 };
 
-TEST_F(ReadAheadTest, GivesWhatTheSourceGivesInAnyOrder) {
-  for (const int step : {0, 1, 2, 4, 1, 1, 3}) EXPECT_EQ(source_.read(static_cast<uint64_t>(step)).batch, step);
-  EXPECT_FALSE(calls_.together);
+TEST_P(ReadAheadTest, GivesWhatTheSourceGivesInAnyOrder) {
+  for (const int step : {0, 1, 2, 3, 4, 5, 9, 11, 1, 1, 3})
+    EXPECT_EQ(source_.read_shown(static_cast<uint64_t>(step)).batch, step);
+  EXPECT_LE(calls_.most_together, threads());
   EXPECT_EQ(source_.size(), 7U);
 }
 
-TEST_F(ReadAheadTest, ReadsTheNextStepUnasked) {
-  source_.read(2);
-  expect_calls(2);  // 2, and 3 in the background
-  source_.read(3);
-  expect_calls(3);  // 4
+TEST_P(ReadAheadTest, ReadsTheNextStepsUnasked) {
+  source_.read_shown(2);
+  expect_calls(calls_, 1 + threads());
+  source_.read_shown(3);
+  expect_calls(calls_, 2 + threads());
 }
 
-TEST_F(ReadAheadTest, AnErrorComesAtTheStepItBelongsTo) {
-  EXPECT_EQ(source_.read(4).batch, 4);  // while 5 fails
-  EXPECT_THROW(source_.read(5), Error);
-  EXPECT_THROW(source_.read(5), Error);
-  EXPECT_EQ(source_.read(0).batch, 0);
+TEST_P(ReadAheadTest, AnErrorComesAtTheStepItBelongsTo) {
+  EXPECT_EQ(source_.read_shown(18).batch, 18);  // while 20 fails
+  EXPECT_EQ(source_.read_shown(19).batch, 19);
+  EXPECT_THROW(source_.read_shown(20), Error);
+  EXPECT_THROW(source_.read_shown(20), Error);
+  EXPECT_EQ(source_.read_shown(0).batch, 0);
 }
+
+TEST_P(ReadAheadTest, StepsOfSeveralThreadsAreReadTogether) {
+  for (uint64_t step = 0; step < 10; ++step) source_.read_shown(step);
+  EXPECT_EQ(calls_.most_together > 1, threads() > 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, ReadAheadTest, testing::Values(1, 2, 5));
 
 }  // namespace
 }  // namespace vkopple

@@ -10,6 +10,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
+#include "train/data/read_ahead.h"
 #include "train/image_io.h"
 
 namespace vkopple {
@@ -124,12 +125,13 @@ TEST_F(ShardSourceTest, ASmallSetRepeatsItself) {
 TEST_F(ShardSourceTest, EvaluationTakesEachSceneOnceInOrder) {
   write({scene(0, 7), scene(1, 2), scene(2, 4), scene(3, 3)});
   ShardSource source = open(2, 1, Reading::kEvaluation);
-  EXPECT_EQ(source.size(), 3U);
-  EXPECT_EQ(names(source.read(0)), (std::vector<Name>{{0, 2, 3, 4}, {2, 0, 1, 2}}));
-  EXPECT_EQ(names(source.read(1)), (std::vector<Name>{{3, 0, 1, 2}, {0, 2, 3, 4}}));
+  EXPECT_EQ(source.size(), 4U);
+  EXPECT_EQ(names(source.read(0)), (std::vector<Name>{{0, 2, 3, 4}, {1, 0, 0, 1}}));
+  EXPECT_EQ(names(source.read(1)), (std::vector<Name>{{2, 0, 1, 2}, {3, 0, 1, 2}}));
+  EXPECT_EQ(names(source.read(2))[0], (Name{0, 2, 3, 4}));
   const TripletBatch batch = source.read(0);
   EXPECT_EQ(batch.depth[0], 4);
-  EXPECT_EQ(batch.depth[24], 2);
+  EXPECT_EQ(batch.depth[24], 1);
   EXPECT_EQ(batch.label[1], 1U);
   EXPECT_EQ(batch.label[2], 0U);
   ASSERT_EQ(batch.objects.size(), 2U);
@@ -160,6 +162,42 @@ TEST_F(ShardSourceTest, WithoutTruthItIsEmpty) {
   EXPECT_EQ(open(1, 1, Reading::kEvaluation).read(0).objects.size(), 1U);
 }
 
+TEST_F(ShardSourceTest, SingleImagesOfUnknownCamerasAreEvaluated) {
+  Sample single = scene(1, 1);
+  single.parts["json"] = to_bytes(R"({"fov": 0.5, "frames": [{}]})");
+  DepthAndIds labels{{}, {4, 6}};
+  labels.ids.pixels[3] = 2;
+  single.parts["0.exr"] = encode_known_exr(labels);
+  write({single});
+  const TripletBatch batch = open(1, 1, Reading::kEvaluation).read(0);
+  EXPECT_EQ(batch.label[3], 2U);
+  EXPECT_EQ(batch.images[1], batch.images[0]);
+  EXPECT_TRUE(batch.depth.empty() && batch.objects.empty() && batch.poses[1].empty());
+}
+
+TEST_F(ShardSourceTest, WhatIsShownLacksTruthAlone) {
+  write({scene(0, 5), scene(1, 3)});
+  ShardSource source = open(2);
+  const TripletBatch whole = source.read(3), shown = source.read_shown(3);
+  EXPECT_EQ(shown.images, whole.images);
+  EXPECT_EQ(shown.poses, whole.poses);
+  EXPECT_EQ(whole.depth.size(), 48U);
+  EXPECT_TRUE(shown.depth.empty() && shown.label.empty() && shown.objects.empty());
+}
+
+TEST_F(ShardSourceTest, TheOrderIsTheSameWithAnyNumberOfThreads) {
+  write({scene(0, 5), scene(1, 3), scene(2, 4)});
+  ShardSource alone = open(3);
+  for (const int threads : {1, 2, 7}) {
+    ReadAhead several(std::make_unique<ShardSource>(folder_.path() / "set", kLens, 3, 1, Reading::kTraining),
+                      threads);
+    for (uint64_t step = 0; step < 12; ++step)  // six epochs
+      ASSERT_EQ(names(several.read_shown(step)), names(alone.read_shown(step)))
+          << threads << " threads, " << step;
+    EXPECT_EQ(names(several.read_shown(5)), names(alone.read_shown(5))) << "resumed elsewhere";
+  }
+}
+
 TEST_F(ShardSourceTest, RefusesWhatDoesNotFit) {
   const Sample good = scene(0, 3);
   const auto with_json = [&](const std::string& json) {
@@ -169,11 +207,13 @@ TEST_F(ShardSourceTest, RefusesWhatDoesNotFit) {
   };
   refuse(good, {"x-000000.tar: 000.json", "fov is 1 ", "1.3"}, Lens(4, 6, 1.3));
   refuse(good, {"6 x 4", "ratio of 6 x 6"}, Lens(6, 6, 1.0));
-  refuse(with_json("{}"), {"000.json", "fov"});
+  refuse(with_json("{}"), {"000.json", "frames"});
+  refuse(with_json(R"({"frames": [{"camera": [0, 0, 0, 0, 0, 0]}]})"), {"000.json", "fov"});
   refuse(with_json(R"({"fov": 1.0, "frames": []})"), {"000.json", "frames"});
   refuse(with_json(R"({"fov": 1.0, "frames": [{"camera": [1, 2]}]})"), {"000.json", "camera"});
   refuse(with_json(R"({"fov": 1.0, "frames": [{"camera": [1e300, 0, 0, 0, 0, 0]}]})"),
          {"000.json", "camera", "1000000"});
+  refuse(with_json(R"({"fov": 1.0, "frames": [{}]})"), {"000.json", "frame 0 has no camera pose"});
   refuse(with_json("{"), {"000.json"});
   Sample damaged = good;
   damaged.parts["1.png"].resize(40);

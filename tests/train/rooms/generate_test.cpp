@@ -103,8 +103,9 @@ TEST(Generate, ReadBackItIsWhatWasDrawn) {
   GenerateOptions o = options(folder / "a", 4);
   o.rooms.frames = 3;  // one triplet a scene: both sources must choose the same
   generate_rooms(test_device(), o);
-  const auto drawn = open_triplets(test_device(), "rooms:5", kLens, o.rooms, 4, 0, Reading::kTraining);
-  const auto stored = open_triplets(test_device(), o.folder, kLens, o.rooms, 4, 0, Reading::kEvaluation);
+  const auto drawn = open_triplets(test_device(), "rooms:5", kLens, o.rooms, 4, {});
+  const auto stored =
+      open_triplets(test_device(), o.folder, kLens, o.rooms, 4, {.reading = Reading::kEvaluation});
   const TripletBatch a = drawn->read(0), b = stored->read(0);
   for (std::size_t frame = 0; frame < 3; ++frame) {
     ASSERT_EQ(a.images[frame].size(), b.images[frame].size());
@@ -126,11 +127,9 @@ TEST(Generate, ReadBackItIsWhatWasDrawn) {
 
 TEST(OpenTriplets, RefusesASeedThatIsNone) {
   for (const char* data : {"rooms:", "rooms:x", "rooms:-1", "rooms:1x", "rooms:99999999999999999999"}) {
-    EXPECT_THROW(open_triplets(test_device(), data, kLens, RoomsConfig{}, 1, 0, Reading::kTraining), UsageError)
-        << data;
+    EXPECT_THROW(open_triplets(test_device(), data, kLens, RoomsConfig{}, 1, {}), UsageError) << data;
   }
-  expect_error([] { open_triplets(test_device(), "/nowhere", kLens, RoomsConfig{}, 1, 0, Reading::kTraining); },
-               {"/nowhere"});
+  expect_error([] { open_triplets(test_device(), "/nowhere", kLens, RoomsConfig{}, 1, {}); }, {"/nowhere"});
 }
 
 }  // namespace

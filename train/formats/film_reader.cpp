@@ -1,0 +1,68 @@
+#include "train/formats/film_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "train/atomic_file.h"
+#include "train/image_io.h"
+
+namespace vkopple {
+namespace {
+
+constexpr long kFramesOfAFilm = 24;
+constexpr std::size_t kFewestFrames = 3;
+constexpr std::size_t kMaxLayersBytes = std::size_t{1} << 30;
+
+SceneFrame read_frame(const FilmFrame& listed) {
+  SceneFrame frame{.image = read_rgb(listed.image), .camera = listed.camera};
+  frame.objects = listed.objects;
+  if (listed.layers.empty()) return frame;
+  DepthAndIds layers = decode_known_exr(read_file(listed.layers, kMaxLayersBytes), listed.layers.string());
+  frame.depth = std::move(layers.depth);
+  frame.ids = std::move(layers.ids);
+  return frame;
+}
+
+}  // namespace
+
+std::optional<SceneData> FilmReader::next() {
+  if (read_ == films_.size()) return std::nullopt;
+  const Film& film = films_[read_++];
+  SceneData scene{.key = film.key, .source = film.frames.at(0).image.string(), .fov = fov_};
+  for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame));
+  scene.shapes = film.shapes;
+  return scene;
+}
+
+Cutting cutting(const FormatOptions& options) {
+  return {options.integer("every", 1, 1'000'000, 1),
+          options.integer("frames", 1, static_cast<long>(kMostSceneFrames), kFramesOfAFilm)};
+}
+
+std::vector<NamedHelp> cutting_help() {
+  return {
+      {"every", "of so many pictures one is taken, 1 unless given"},
+      {"frames", fmt::format("of a scene, into which a recording is cut: {} unless given", kFramesOfAFilm)}};
+}
+
+std::vector<Film> cut_into_films(const std::vector<FilmFrame>& frames, const Cutting& cutting,
+                                 std::size_t first) {
+  std::vector<Film> films;
+  Film film;
+  const std::size_t fewest = std::min(kFewestFrames, static_cast<std::size_t>(cutting.frames));
+  const auto close = [&] {
+    if (film.frames.size() < fewest) return;
+    film.key = fmt::format("{:06}", first + films.size());
+    films.push_back(std::move(film));
+    film = {};
+  };
+  for (std::size_t i = 0; i < frames.size(); i += static_cast<std::size_t>(cutting.every)) {
+    film.frames.push_back(frames[i]);
+    if (film.frames.size() == static_cast<std::size_t>(cutting.frames)) close();
+  }
+  close();
+  return films;
+}
+
+}  // namespace vkopple

@@ -112,8 +112,8 @@ CameraPose own_pose(const Vector& position, const std::array<double, 4>& wxyz, C
       position, [&](const Vector& v) { return rotated(q, v); }, camera, world);
 }
 
-CameraPose own_pose(const Vector& position, const std::array<double, 9>& rotation, CameraAxes camera,
-                    WorldAxes world) {
+CameraPose own_pose_of_matrix(const Vector& position, const std::array<double, 9>& rotation, CameraAxes camera,
+                              WorldAxes world) {
   const std::array<double, 9>& m = rotation;
   if (!is_rotation(m)) throw Error("the camera's matrix is no rotation");
   const auto turn = [&](const Vector& v) {

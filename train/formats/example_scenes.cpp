@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "train/image_io.h"
 #include "train/quote.h"
 
 namespace vkopple {
@@ -70,6 +71,29 @@ std::optional<SceneData> ExampleScenes::next() {
   scene.key = key_of(*record);
   scene.source = record->where();
   return scene;
+}
+
+std::string place_of(const Example& example, const std::string& feature, std::size_t index) {
+  return fmt::format("{}[{}]", example.where(feature), index);
+}
+
+std::vector<SceneFrame> decode_frames(const Example& example, const std::string& feature) {
+  constexpr std::size_t kMostPixels = std::size_t{1} << 26;
+  const auto pictures = example.bytes(feature);
+  if (pictures.size() > kMostSceneFrames)
+    throw Error(fmt::format("{}: {} frames are more than {}", example.where(feature), pictures.size(),
+                            kMostSceneFrames));
+  std::vector<SceneFrame> frames;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::string where = place_of(example, feature, i);
+    RgbImage image = decode_rgb(as_bytes(pictures[i]), where);
+    if (image.pixels.size() / 3 > kMostPixels / pictures.size())
+      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller", where,
+                              pictures.size(), image.width, image.height));
+    if (i > 0) image = fitting(std::move(image), frames, where);
+    frames.push_back({.image = std::move(image)});
+  }
+  return frames;
 }
 
 bool first_example_has(const std::filesystem::path& path, const std::vector<std::string>& features) {

@@ -71,6 +71,21 @@ inline std::span<const std::byte> as_bytes(std::string_view text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
+/// "a.tfrecord: record 3: frames[1]", for messages.
+std::string place_of(const Example& example, const std::string& feature, std::size_t index);
+
+/// A frame for each PNG or JPEG of a feature. Error where there are too many of them for a scene, or too many
+/// pixels.
+std::vector<SceneFrame> decode_frames(const Example& example, const std::string& feature);
+
+/// A picture that must be as large as the first frame's. Throws Error.
+template <class Picture>
+Picture fitting(Picture picture, const std::vector<SceneFrame>& frames, const std::string& where) {
+  const RgbImage& first = frames.at(0).image;
+  if (picture.height == first.height && picture.width == first.width) return picture;
+  throw Error(where + ": it is not as large as the first frame");
+}
+
 /// What `make` returns; its Error is told with the place.
 template <class Make>
 auto made_at(const std::string& where, Make&& make) {

@@ -132,6 +132,14 @@ TEST_F(ExampleScenesOf, GqnRefusesWhatDoesNotFit) {
   set_bytes(example, "frames", {png().substr(0, 40)});
   refuse(example, "gqn", {"frames[0]"});
   example = gqn();
+  set_bytes(example, "frames", std::vector<std::string>(121, png()));
+  refuse(example, "gqn", {"record 0: frames", "121 frames"});
+  set_bytes(example, "frames", {png(), png(4, 5)});
+  refuse(example, "gqn", {"record 0: frames[1]", "not as large as the first frame"});
+  example = gqn();
+  set_bytes(example, "masks", {png(5, 4)});
+  refuse(example, "gqn", {"record 0: masks[0]", "not as large as the first frame"});
+  example = gqn();
   set_bytes(example, "frames", {});
   refuse(example, "gqn", {"record 0", "no frames"}, "mask=-,depth=-");
   example = gqn();
@@ -158,6 +166,12 @@ TEST_F(ExampleScenesOf, GqnTakesScaleAndAngleFromOptions) {
   const CameraPose expected{4, -6, 2, 0, 0, 0};
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR((*scene.frames[0].camera)[i], expected[i], 1e-6);
   EXPECT_NEAR(scene.frames[0].depth.pixels[0], 2 * std::sqrt(1 + 2 * 0.75 * 0.75), 1e-5);
+}
+
+TEST_F(ExampleScenesOf, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  records::Example example = gqn();
+  set_bytes(example, "frames", std::vector<std::string>(100, png(1000, 1000)));
+  refuse(example, "gqn", {"frames[0]", "100 frames of 1000 x 1000 pixels are too many"});
 }
 
 TEST_F(ExampleScenesOf, MoviRefusesWhatDoesNotFit) {

@@ -64,6 +64,7 @@ TEST(PythonRecords, Gqn) {
   const SceneData scene = scene_of("gqn");
   constexpr double kScale = 0.7;
   EXPECT_NEAR(scene.fov, std::numbers::pi / 4, 1e-12);
+  EXPECT_EQ(scene.scale, kScale);
   ASSERT_EQ(scene.frames.size(), 3u);
   const double focal = 4 / std::tan(std::numbers::pi / 8);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -91,6 +92,7 @@ TEST(PythonRecords, Movi) {
   const SceneData scene = scene_of("movi");
   constexpr double kScale = 0.4;
   EXPECT_NEAR(scene.fov, 0.85756, 1e-7);
+  EXPECT_EQ(scene.scale, kScale);
   ASSERT_EQ(scene.frames.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const SceneFrame& frame = scene.frames[i];

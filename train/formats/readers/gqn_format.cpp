@@ -52,7 +52,7 @@ class ColourLabels {
 CameraPose pose(std::span<const float> m, double scale) {
   const std::array<double, 3> place{m[3] * scale, m[7] * scale, m[11] * scale};
   const std::array<double, 9> rotation{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]};
-  return own_pose(place, rotation, CameraAxes::kGraphics, WorldAxes::kYUp);
+  return own_pose_of_matrix(place, rotation, CameraAxes::kGraphics, WorldAxes::kYUp);
 }
 
 Plane<float> euclidean_depth(std::span<const float> planar, int height, int width, double fov, double scale) {
@@ -66,18 +66,16 @@ Plane<float> euclidean_depth(std::span<const float> planar, int height, int widt
 SceneData convert(const Example& example, const FeatureNames& names, double fov, double scale) {
   SceneData scene;
   scene.fov = fov;
-  const auto images = example.bytes(names["image"]);
-  const std::size_t frames = images.size();
-  for (std::size_t i = 0; i < frames; ++i)
-    scene.frames.push_back(
-        {.image = decode_rgb(as_bytes(images[i]), fmt::format("{}[{}]", example.where(names["image"]), i))});
-  if (scene.frames.empty()) return scene;
+  scene.scale = scale;
+  scene.frames = decode_frames(example, names["image"]);
+  const std::size_t frames = scene.frames.size();
+  if (frames == 0) return scene;
   const int height = scene.frames[0].image.height, width = scene.frames[0].image.width;
   const std::size_t area = static_cast<std::size_t>(height) * static_cast<std::size_t>(width);
 
   const auto cameras = example.floats(names["camera"], 16 * frames);
   for (std::size_t i = 0; i < frames; ++i)
-    scene.frames[i].camera = made_at(fmt::format("{}[{}]", example.where(names["camera"]), i),
+    scene.frames[i].camera = made_at(place_of(example, names["camera"], i),
                                      [&] { return pose(cameras.subspan(16 * i, 16), scale); });
   if (names.has("depth")) {
     const auto depths = example.floats(names["depth"], area * frames);
@@ -88,8 +86,9 @@ SceneData convert(const Example& example, const FeatureNames& names, double fov,
     const auto masks = example.bytes(names["mask"], frames);
     ColourLabels labels;
     for (std::size_t i = 0; i < frames; ++i) {
-      const std::string where = fmt::format("{}[{}]", example.where(names["mask"]), i);
-      scene.frames[i].ids = labels.of(decode_png(as_bytes(masks[i]), where), where);
+      const std::string where = place_of(example, names["mask"], i);
+      scene.frames[i].ids =
+          labels.of(fitting(decode_png(as_bytes(masks[i]), where), scene.frames, where), where);
     }
   }
   return scene;

@@ -25,6 +25,8 @@ const std::vector<UsualFeature> kFeatures{
     {"object_quaternion", "instances/quaternions", "4 floats for each frame of each instance: w, x, y, z",
      false}};
 
+constexpr double kHalfSensor = 16, kFocal = 35;  // millimetres, of a camera whose angle of view isn't told
+
 template <std::size_t N>
 std::array<double, N> numbers(std::span<const float> values, std::size_t index) {
   std::array<double, N> out{};
@@ -49,11 +51,10 @@ class FilmExample {
       : example_(example), names_(names), scale_(scale) {}
 
   SceneData read() {
-    // Sensor of 32 mm, focal length of 35 mm.
-    scene_.fov = names_.has("fov") ? double{example_.floats(names_["fov"], 1)[0]} : 2 * std::atan(16.0 / 35);
-    const auto images = example_.bytes(names_["image"]);
-    for (std::size_t i = 0; i < images.size(); ++i)
-      scene_.frames.push_back({.image = decode_png(as_bytes(images[i]), where("image", i))});
+    scene_.scale = scale_;
+    scene_.frames = decode_frames(example_, names_["image"]);
+    if (scene_.frames.empty()) return std::move(scene_);
+    read_fov();
     read_cameras();
     if (names_.has("mask")) read_masks();
     if (names_.has("depth") && names_.has("depth_range")) read_depths();
@@ -64,7 +65,15 @@ class FilmExample {
  private:
   std::size_t frames() const { return scene_.frames.size(); }
   std::string where(const std::string& ours, std::size_t index) const {
-    return fmt::format("{}[{}]", example_.where(names_[ours]), index);
+    return place_of(example_, names_[ours], index);
+  }
+
+  /// Theirs is horizontal.
+  void read_fov() {
+    const RgbImage& image = scene_.frames[0].image;
+    const double half =
+        names_.has("fov") ? std::tan(example_.floats(names_["fov"], 1)[0] / 2.0) : kHalfSensor / kFocal;
+    scene_.fov = 2 * std::atan(half * image.height / image.width);
   }
 
   void read_cameras() {
@@ -80,7 +89,8 @@ class FilmExample {
   void read_masks() {
     const auto masks = example_.bytes(names_["mask"], frames());
     for (std::size_t i = 0; i < frames(); ++i) {
-      const auto mask = decode_grey<std::uint8_t>(as_bytes(masks[i]), where("mask", i));
+      const std::string place = where("mask", i);
+      const auto mask = fitting(decode_grey<std::uint8_t>(as_bytes(masks[i]), place), scene_.frames, place);
       Plane<std::uint32_t>& ids = scene_.frames[i].ids;
       ids = {mask.height, mask.width};
       ids.pixels.assign(mask.pixels.begin(), mask.pixels.end());
@@ -91,7 +101,8 @@ class FilmExample {
     const auto range = numbers<2>(example_.floats(names_["depth_range"], 2), 0);
     const auto depths = example_.bytes(names_["depth"], frames());
     for (std::size_t i = 0; i < frames(); ++i) {
-      const auto stored = decode_grey<std::uint16_t>(as_bytes(depths[i]), where("depth", i));
+      const std::string place = where("depth", i);
+      const auto stored = fitting(decode_grey<std::uint16_t>(as_bytes(depths[i]), place), scene_.frames, place);
       Plane<float>& depth = scene_.frames[i].depth;
       depth = {stored.height, stored.width};
       for (std::size_t p = 0; p < depth.pixels.size(); ++p)
@@ -138,8 +149,7 @@ SceneFormat movi_format() {
               },
           .open = [](const std::filesystem::path& path,
                      const FormatOptions& options) -> std::unique_ptr<SceneReader> {
-            // Cameras stand 7 to 9 m from the middle of what is going on, which comes to half of the model's
-            // depth.
+            // MOVi-E's cameras stand 8 to 12 m from the middle: half of what the model's depth reaches.
             const double scale = options.number("scale", 1e-3, 1e3, 0.4);
             return std::make_unique<ExampleScenes>(path, FeatureNames(kFeatures, options),
                                                    [=](const Example& example, const FeatureNames& names) {

@@ -62,6 +62,19 @@ TEST(EvaluationScores, DepthWithoutSky) {
   EXPECT_DOUBLE_EQ(*scores.depth_r(), 0);
 }
 
+TEST(EvaluationScores, ScoresWhatIsKnown) {
+  EvaluationScores scores;
+  add(scores, {}, {3, 3, 3}, {1, 2, 3}, {2, 4, 6});
+  EXPECT_EQ(scores.images(), 1);
+  EXPECT_EQ(scores.skipped(), 0) << "nobody knows whether there is foreground";
+  EXPECT_DOUBLE_EQ(*scores.depth_r(), 1);
+  EXPECT_EQ(scores.iou(), std::nullopt);
+  add(scores, {1, 1, 0}, {0, 0, 3});
+  EXPECT_EQ(scores.images(), 2);
+  EXPECT_DOUBLE_EQ(*scores.depth_r(), 1);
+  EXPECT_DOUBLE_EQ(*scores.iou(), 1);
+}
+
 TEST(EvaluationScores, LocationsOfMatchedVisibleObjects) {
   EvaluationScores scores;
   // Object 1 is slot 2 in part (IoU 1/2), 2 is slot 0; 3 is hidden; slot 1 shows nothing.

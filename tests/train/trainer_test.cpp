@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/small_scene.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
 #include "train/atomic_file.h"
+#include "train/formats/fit_scene.h"
+#include "train/formats/scene_reader.h"
 #include "train/safetensors.h"
 
 namespace vkopple {
@@ -82,6 +86,34 @@ TEST_F(Trained, StoppedAndResumedItWritesTheSameBytes) {
     EXPECT_TRUE(bytes(other.latest()) == bytes(straight().latest())) << stop;
     EXPECT_TRUE(bytes(other.numbered(6)) == bytes(straight().numbered(6))) << stop;
   }
+}
+
+TEST(TrainerOnShards, GoesOnAtTheVerySampleWithAnyNumberOfThreads) {
+  const TempFolder folder;
+  Config config = Config::parse(R"({
+      "model": {"height": 16, "width": 16, "depth_width": 2, "object_width": 4, "imagine_width": 1, "lstm": 4},
+      "training": {"batch": 2, "stages": [{"networks": ["depth"], "hypotheses": "background"}]}})",
+                                "test");
+  config.model.fov = std::atan(1.0);
+  {
+    const auto writer = create_scenes(folder / "data", "shards");
+    for (int i = 0; i < 3; ++i)
+      writer->add(fitted(test::small_scene(i, 5), {.height = 16, .width = 16, .fov = config.model.fov}));
+    writer->finish();
+  }
+  const auto run = [&](const std::string& name, uint64_t steps, int threads, bool resume) {
+    const std::unique_ptr<std::FILE, Close> sink(std::tmpfile());
+    Progress progress(sink.get(), false, 14);
+    TrainerOptions options{.folder = RunFolder(folder / name), .data = folder / "data", .steps = 14, .seed = 9};
+    options.eval_every = 0;
+    options.data_threads = threads;
+    Trainer trainer(test_device(), config, options, resume);
+    trainer.run(progress, [&] { return trainer.position().step >= steps; });
+    return bytes(RunFolder(folder / name).latest());
+  };
+  const auto straight = run("straight", 14, 1, false);  // more than two epochs of six steps
+  run("stopped", 7, 3, false);
+  EXPECT_TRUE(run("stopped", 14, 2, true) == straight);
 }
 
 TEST_F(Trained, LeavesNumberedCheckpointsAndALog) {

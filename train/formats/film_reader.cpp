@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "train/atomic_file.h"
+#include "train/formats/camera_axes.h"
 #include "train/image_io.h"
 
 namespace vkopple {
@@ -14,9 +16,20 @@ constexpr long kFramesOfAFilm = 24;
 constexpr std::size_t kFewestFrames = 3;
 constexpr std::size_t kMaxLayersBytes = std::size_t{1} << 30;
 
-SceneFrame read_frame(const FilmFrame& listed) {
+/// Grey levels of 16 bits are exact in floats from 0 to 1.
+Plane<float> read_planar_depth(const FilmFrame& listed, double fov) {
+  const RgbImage picture = read_rgb(listed.planar_depth);
+  Plane<float> depth(picture.height, picture.width);
+  for (std::size_t i = 0; i < depth.pixels.size(); ++i)
+    depth.pixels[i] = static_cast<float>(std::round(65535.0 * picture.pixels[i]) * listed.depth_unit);
+  planar_to_euclidean(depth, fov);
+  return depth;
+}
+
+SceneFrame read_frame(const FilmFrame& listed, double fov) {
   SceneFrame frame{.image = read_rgb(listed.image), .camera = listed.camera};
   frame.objects = listed.objects;
+  if (!listed.planar_depth.empty()) frame.depth = read_planar_depth(listed, fov);
   if (listed.layers.empty()) return frame;
   DepthAndIds layers = decode_known_exr(read_file(listed.layers, kMaxLayersBytes), listed.layers.string());
   frame.depth = std::move(layers.depth);
@@ -30,7 +43,7 @@ std::optional<SceneData> FilmReader::next() {
   if (read_ == films_.size()) return std::nullopt;
   const Film& film = films_[read_++];
   SceneData scene{.key = film.key, .source = film.frames.at(0).image.string(), .fov = fov_};
-  for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame));
+  for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame, fov_));
   scene.shapes = film.shapes;
   return scene;
 }

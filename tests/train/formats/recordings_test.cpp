@@ -5,6 +5,7 @@
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/write_grey16.h"
 #include "train/atomic_file.h"
 #include "train/formats/scene_reader.h"
 #include "train/image_io.h"
@@ -149,6 +150,22 @@ TEST_F(TumTest, PicturesGetTheNearestPose) {
       << "upside down by other axes";
 }
 
+TEST_F(TumTest, DepthPicturesAreReadWhereThereAreSome) {
+  std::filesystem::create_directory(folder_ / "depth");
+  test::write_grey16(folder_ / "depth" / "100.610000.png", 6, 4, 10000);  // two metres, for the second picture
+  test::write_grey16(folder_ / "depth" / "100.593000.png", 6, 4, 5000);   // nearer in time
+  test::write_grey16(folder_ / "depth" / "100.930000.png", 6, 4, 5000);   // too late for the fifth
+  const auto scene = open()->next();
+  ASSERT_TRUE(scene);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(scene->frames[i].depth.pixels.empty(), i != 1) << i;
+  const double focal = 2 / std::tan(scene->fov / 2);
+  EXPECT_NEAR(scene->frames[1].depth.pixels[0], std::sqrt(1 + (2.5 * 2.5 + 1.5 * 1.5) / (focal * focal)), 1e-6);
+  EXPECT_NEAR(scene->frames[1].depth.pixels[8], std::sqrt(1 + (0.5 * 0.5 + 0.5 * 0.5) / (focal * focal)), 1e-6);
+  EXPECT_NEAR(open({{"depth_factor", "1000"}})->next()->frames[1].depth.pixels[8],
+              5 * scene->frames[1].depth.pixels[8], 1e-5);
+  expect_error([&] { open({{"depth", "absent"}}); }, {"absent", "can't be read"});
+}
+
 TEST_F(TumTest, PicturesWithoutAPoseEndAScene) {
   std::filesystem::rename(folder_ / "rgb" / "100.800000.png", folder_ / "rgb" / "100.850000.png");
   expect_error([&] { open(); },
@@ -173,6 +190,9 @@ TEST_F(TumTest, NamesWhatIsWrong) {
   wrong("#\n1 2 3\n", {"line 2", "eight numbers", "'1 2 3'"});
   wrong("1 2 3 4 5 6 7 x\n", {"line 1"});
   wrong("1 2 3 4 5 6 7 nan\n", {"line 1"});
+  std::filesystem::copy_file(folder_ / "rgb" / "100.500000.png", folder_ / "rgb" / "100.5.png");
+  wrong("100.5 0 0 0 0 0 0 1\n", {"100.5", "the same timestamp"});
+  std::filesystem::remove(folder_ / "rgb" / "100.5.png");
   wrong("100.5 0 0 0 0 0 0 0\n", {"at 100.500000 s", "no unit quaternion"});
   for (int i = 0; i < 6; ++i)
     std::filesystem::remove(folder_ / "rgb" / fmt::format("{:.6f}.png", 100.5 + 0.1 * i));

@@ -63,6 +63,19 @@ TEST(ShardScenes, RememberTheScale) {
   EXPECT_EQ(reader->next()->scale, 1);
 }
 
+TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {
+  const TempFolder folder;
+  SceneData narrow = small_scene(2, 3);
+  narrow.fov = 1;
+  expect_error(
+      [&] {
+        write(folder / "set", "recording", {small_scene(1, 3), narrow});
+      },
+      {"made: its angle of view is 1 ", "1.25", "--fov"});
+  write_file(folder / "rooms-000000.tar", "");
+  expect_error([&] { create_scenes(folder.path(), "shards"); }, {folder.path(), "holds shards already"});
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, WholeFormats, testing::Values("shards", "recording"));
 
 TEST(SceneFormats, AreFoundByTheBuild) {

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <system_error>
 
+#include "runtime/error.h"
 #include "train/formats/scene_reader.h"
 #include "train/formats/shard_scene.h"
+#include "train/quote.h"
 
 namespace vkopple {
 namespace {
@@ -61,6 +62,9 @@ SceneFormat shards_format() {
         return std::make_unique<ShardSceneReader>(path);
       },
       .create = [](const fs::path& path, const FormatOptions& options) -> std::unique_ptr<SceneWriter> {
+        if (recognises(path))
+          throw Error(fmt::format("{} holds shards already; remove the old data set or choose another folder",
+                                  quote(path.string(), 4096)));
         return std::make_unique<ShardSceneWriter>(path, options);
       },
   };

@@ -26,12 +26,14 @@ class ColourLabels {
   Plane<std::uint32_t> of(const RgbImage& mask, const std::string& where) {
     Plane<std::uint32_t> ids(mask.height, mask.width);
     const std::size_t area = ids.pixels.size();
-    for (std::size_t i = 0; i < area; ++i)
+    for (std::size_t i = 0; i < area; ++i) {
       ids.pixels[i] =
           label({byte(mask.pixels[i]), byte(mask.pixels[area + i]), byte(mask.pixels[2 * area + i])});
-    // Blended colours, of antialiased masks or JPEG, would pass for hundreds of objects.
-    if (labels_.size() > kMostColours)
-      throw Error(fmt::format("{}: more than {} colours, which can't be an object each", where, kMostColours));
+      // Blended colours, of antialiased masks or JPEG, would pass for hundreds of objects.
+      if (labels_.size() > kMostColours)
+        throw Error(
+            fmt::format("{}: more than {} colours, which can't be an object each", where, kMostColours));
+    }
     return ids;
   }
 

@@ -10,6 +10,7 @@ TEST(CountProgress, ALineTellsPaceAndTimeLeft) {
   EXPECT_EQ(count_line(90, 90, "scenes", 60), "90/90 scenes  1.5 scenes/s  0:00 left");
   EXPECT_EQ(count_line(0, 90, "scenes", 60), "0/90 scenes");
   EXPECT_EQ(count_line(90, 90, "scenes", 0), "90/90 scenes");
+  EXPECT_EQ(count_line(90, 0, "scenes", 60), "90 scenes") << "of how many is unknown";
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/error.h"
 #include "train/atomic_file.h"
 #include "train/formats/camera_axes.h"
 #include "train/image_io.h"
+#include "train/quote.h"
 
 namespace vkopple {
 namespace {
@@ -42,6 +44,10 @@ SceneFrame read_frame(const FilmFrame& listed, double fov) {
 std::optional<SceneData> FilmReader::next() {
   if (read_ == films_.size()) return std::nullopt;
   const Film& film = films_[read_++];
+  if (film.frames.size() > kMostSceneFrames)  // before they take memory
+    throw Error(fmt::format("{}: the scene {} that begins with it has {} frames; at most {} are read",
+                            film.frames[0].image.string(), quote(film.key), film.frames.size(),
+                            kMostSceneFrames));
   SceneData scene{.key = film.key, .source = film.frames.at(0).image.string(), .fov = fov_};
   for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame, fov_));
   scene.shapes = film.shapes;

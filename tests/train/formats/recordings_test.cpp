@@ -111,6 +111,10 @@ TEST_F(RecordingTest, NamesWhatIsWrong) {
   refuse({"axes.camera", "body, graphics, optical, own"});
   poses(R"("fov": 1)", good + frame(2, R"(, "scene": "a")"));
   refuse({"''", "key"});
+  std::string many;
+  for (int i = 0; i < 121; ++i) many += (i > 0 ? "," : "") + frame(0, R"(, "scene": "long")");
+  poses(R"("fov": 1)", many);
+  refuse({"'long'", "121 frames", "120"});
   write_file(folder_ / "poses.json", "[");
   refuse({"poses.json"});
 }

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
-#include <set>
 #include <system_error>
 
 #include "runtime/error.h"
@@ -58,9 +58,9 @@ class Recording {
 
   std::vector<Film> films(const Cutting& cutting) const {
     const std::vector<Entry> entries = read_entries();
-    const bool named =
+    const bool by_name =
         std::any_of(entries.begin(), entries.end(), [](const Entry& e) { return !e.scene.empty(); });
-    if (named) return films_by_name(entries);
+    if (by_name) return films_by_name(entries);
     std::vector<FilmFrame> frames;
     for (const Entry& entry : entries) frames.push_back(entry.frame);
     return cut_into_films(frames, cutting, 0);

@@ -15,6 +15,13 @@ std::span<const T> part(const std::vector<T>& values, size_t index, size_t count
   return std::span(values).subspan(index * (values.size() / count), values.size() / count);
 }
 
+/// Empty where unknown.
+std::vector<int32_t> true_labels(const TripletBatch& batch, size_t index) {
+  const auto truth = part(batch.label, index, static_cast<size_t>(batch.batch));
+  if (truth.empty() || truth[0] == kUnknownLabel) return {};
+  return {truth.begin(), truth.end()};
+}
+
 std::vector<LabelledLocation> true_locations(const TripletBatch& batch, size_t index) {
   std::vector<LabelledLocation> all;
   if (batch.objects.empty()) return all;
@@ -33,11 +40,12 @@ std::vector<LabelledLocation> inferred_locations(std::span<const float> location
   return all;
 }
 
-/// Endlessly far where there are no values.
+/// Endlessly far where there are no values, or 0.
 Plane<float> plane(std::span<const float> values, int height, int width) {
   Plane<float> out(height, width);
   std::fill(out.pixels.begin(), out.pixels.end(), std::numeric_limits<float>::infinity());
-  std::copy(values.begin(), values.end(), out.pixels.begin());
+  std::replace_copy(values.begin(), values.end(), out.pixels.begin(), 0.0f,
+                    std::numeric_limits<float>::infinity());
   return out;
 }
 
@@ -49,8 +57,7 @@ class Evaluation {
   void add(const TripletBatch& batch, size_t index) {
     const auto count = static_cast<size_t>(batch.batch);
     const auto entities = model_.config().slots + 1;
-    const auto truth = part(batch.label, index, count);
-    const std::vector<int32_t> labels(truth.begin(), truth.end());
+    const std::vector<int32_t> labels = true_labels(batch, index);
     const bool has_depth = !batch.depth.empty();
     const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
     const auto true_objects = true_locations(batch, index);
@@ -113,7 +120,7 @@ EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t imag
   Evaluation evaluation(model, grid, grid_rows);
   for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
     const TripletBatch batch = source.read(step);
-    if (batch.label.empty() && batch.depth.empty())
+    if (step == 0 && batch.label.empty() && batch.depth.empty())
       throw Error(
           "the data has neither true labels nor true depth to compare with; use rooms:SEED or shards of "
           "vkopple "

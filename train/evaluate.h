@@ -16,9 +16,9 @@ namespace vkopple {
 std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities);
 
 /// Scores (docs/model.md §10) on the middle frames of a source's triplets, `images` of them from step 0 on.
-/// Where `grid` is given it receives, for the first `grid_rows` images, picture, inferred objects, true
-/// objects, inferred depth, true depth. `progress` (may be empty) is told how many images are done. Throws
-/// Error where the source has no truth.
+/// What is unknown of an image is left out of its scores. Where `grid` is given it receives, for the first
+/// `grid_rows` images, picture, inferred objects, true objects, inferred depth, true depth. `progress` (may be
+/// empty) is told how many images are done. Throws Error where the first batch has neither labels nor depth.
 EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
                           std::vector<std::vector<RgbImage>>* grid = nullptr, size_t grid_rows = 6,
                           const std::function<void(int64_t)>& progress = {});

@@ -52,8 +52,12 @@ void EvaluationScores::add(const EvaluatedImage& image) {
     matches = match_entities(image.true_labels, image.predicted_labels);
   }
   ++images_;
+  places_ += static_cast<std::int64_t>(image.true_objects.size());
   add_depth(image);
-  if (!labelled) return;
+  if (!labelled) {
+    ++without_masks_;
+    return;
+  }
   if (!ari) ++skipped_;
   ari_fg_.add(ari);
   if (object_count(image.true_labels) >= 2) ari_fg_multi_.add(ari);
@@ -70,6 +74,7 @@ void EvaluationScores::add_depth(const EvaluatedImage& image) {
     here.add(truth, predicted);
     depth_pooled_.add(truth, predicted);
   }
+  if (here.count() == 0) ++without_depth_;
   depth_r_.add(here.r());
 }
 
@@ -100,7 +105,9 @@ Json EvaluationScores::to_json() const {
           {"angle_r_good", value(angle_r_good())},
           {"distance_r_good", value(distance_r_good())},
           {"images", images_},
-          {"skipped", skipped_}};
+          {"skipped", skipped_},
+          {"without_masks", without_masks_},
+          {"without_depth", without_depth_}};
 }
 
 std::string EvaluationScores::to_table() const {
@@ -123,6 +130,19 @@ std::string EvaluationScores::to_table() const {
     text += fmt::format("{:<28}{:>8}\n", row.name, row.value ? fmt::format("{:.3f}", *row.value) : "-");
   }
   return text + fmt::format("{:<28}{:>8}\n{:<28}{:>8}\n", "images", images_, "  without foreground", skipped_);
+}
+
+std::vector<std::string> EvaluationScores::left_out() const {
+  std::vector<std::string> lines;
+  const auto say = [&](std::int64_t count, const char* what, const char* of) {
+    if (count > 0)
+      lines.push_back(fmt::format("{} of {} images have no true {}: {}", count, images_, what, of));
+  };
+  say(without_masks_, "masks", "left out of ARI, IoU, angles and distances");
+  say(without_depth_, "depth", "left out of the correlation of depth");
+  if (images_ > 0 && places_ == 0)
+    lines.emplace_back("where objects are is not known: no angles and distances");
+  return lines;
 }
 
 }  // namespace vkopple

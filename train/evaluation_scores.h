@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "train/json_io.h"
 #include "train/metrics.h"
@@ -38,6 +39,8 @@ class EvaluationScores {
 
   std::int64_t images() const { return images_; }
   std::int64_t skipped() const { return skipped_; }
+  std::int64_t without_masks() const { return without_masks_; }  ///< images whose true labels are unknown
+  std::int64_t without_depth() const { return without_depth_; }  ///< or all of the true depth
 
   std::optional<double> ari_fg() const { return ari_fg_.value(); }
   std::optional<double> ari_fg_multi() const {
@@ -58,6 +61,9 @@ class EvaluationScores {
   /// A table of names and values to three places, one a line; "-" where undefined.
   std::string to_table() const;
 
+  /// What is left out of which scores, a line each.
+  std::vector<std::string> left_out() const;
+
  private:
   class Mean {
    public:
@@ -72,7 +78,7 @@ class EvaluationScores {
   void add_depth(const EvaluatedImage& image);
   void add_locations(const EvaluatedImage& image, std::span<const Match> matches);
 
-  std::int64_t images_ = 0, skipped_ = 0;
+  std::int64_t images_ = 0, skipped_ = 0, without_masks_ = 0, without_depth_ = 0, places_ = 0;
   Mean ari_fg_, ari_fg_multi_, iou_, iou_objects_, depth_r_;
   Correlation depth_pooled_, angle_, distance_, angle_good_, distance_good_;
 };

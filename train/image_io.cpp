@@ -208,6 +208,29 @@ RgbImage decode_png(std::span<const std::byte> bytes, const std::string& source)
   });
 }
 
+RgbImage decode_rgb(std::span<const std::byte> bytes, const std::string& source) {
+  const bool jpeg = bytes.size() > 2 && bytes[0] == std::byte{0xff} && bytes[1] == std::byte{0xd8};
+  return guarded(source, [&] {
+    Input input(bytes, jpeg ? "jpeg" : "png", source);
+    return to_rgb(input);
+  });
+}
+
+template <class T>
+Plane<T> decode_grey(std::span<const std::byte> bytes, const std::string& source) {
+  constexpr TypeDesc kType = sizeof(T) == 1 ? TypeDesc::UINT8 : TypeDesc::UINT16;
+  return guarded(source, [&] {
+    Input input(bytes, "png", source);
+    if (input.spec().nchannels != 1 || input.spec().format != kType)
+      input.fail("it must have one channel of " + std::to_string(8 * sizeof(T)) + " bits");
+    Plane<T> plane(input.height(), input.width());
+    plane.pixels = input.read<T>(0, 1, kType);
+    return plane;
+  });
+}
+template Plane<std::uint8_t> decode_grey(std::span<const std::byte> bytes, const std::string& source);
+template Plane<std::uint16_t> decode_grey(std::span<const std::byte> bytes, const std::string& source);
+
 std::vector<std::byte> encode_png(const RgbImage& image) {
   check_size(image.height, image.width, image.pixels.size(), 3);
   const std::size_t pixels = image.pixels.size() / 3;

@@ -22,6 +22,13 @@ RgbImage read_rgb(const std::filesystem::path& path);
 /// The same of a PNG in memory.
 RgbImage decode_png(std::span<const std::byte> bytes, const std::string& source);
 
+/// The same of a PNG or a JPEG in memory.
+RgbImage decode_rgb(std::span<const std::byte> bytes, const std::string& source);
+
+/// The numbers of a PNG of one channel, stored with as many bits as `T` (8 or 16).
+template <class T>
+Plane<T> decode_grey(std::span<const std::byte> bytes, const std::string& source);
+
 /// 8 bits a channel, values clamped to [0, 1] and rounded.
 std::vector<std::byte> encode_png(const RgbImage& image);
 /// 8-bit grey, for indices.

@@ -124,5 +124,26 @@ TEST_F(EvalCommand, NeedsTheTruth) {
   expect_failure(eval(folder_ / "blind"), 1, {"true labels"});
 }
 
+TEST_F(EvalCommand, OfClevrMasksAloneAreScored) {
+  const std::string clevr = std::string(VKOPPLE_SOURCE_DIR) + "/tests/fixtures/records-clevr.tfrecord";
+  const auto outcome = eval(clevr, {"--json", "--grid", folder_ / "grid.png"});
+  expect_success(outcome);
+  const json scores = json::parse(outcome.output);
+  EXPECT_EQ(scores.at("images"), 1);
+  EXPECT_EQ(scores.at("without_masks"), 0);
+  EXPECT_EQ(scores.at("without_depth"), 1);
+  EXPECT_GT(scores.at("iou"), 0.0);
+  EXPECT_TRUE(scores.at("ari_fg_multi").is_number());
+  for (const char* key : {"depth_r", "depth_r_pooled", "angle_r", "distance_r"})
+    EXPECT_TRUE(scores.at(key).is_null());
+  EXPECT_NE(outcome.errors.find("1 of 1 images have no true depth"), std::string::npos) << outcome.errors;
+  EXPECT_NE(outcome.errors.find("where objects are is not known"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(EvalCommand, FilmsOfAnotherAngleOfViewAreRefused) {
+  expect_failure(eval(std::string(VKOPPLE_SOURCE_DIR) + "/tests/fixtures/records-gqn.tfrecord"), 1,
+                 {"fov is 0.785", "set model.fov"});
+}
+
 }  // namespace
 }  // namespace vkopple

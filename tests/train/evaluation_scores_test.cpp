@@ -22,7 +22,8 @@ void add(EvaluationScores& scores, const Labels& truth, const Labels& predicted,
 TEST(EvaluationScores, NothingIsNull) {
   const EvaluationScores scores;
   const Json json = scores.to_json();
-  EXPECT_EQ(json.size(), 12u);
+  EXPECT_EQ(json.size(), 14u);
+  EXPECT_TRUE(scores.left_out().empty());
   for (const char* key : {"ari_fg", "ari_fg_multi", "iou", "iou_objects", "depth_r", "depth_r_pooled",
                           "angle_r", "distance_r", "angle_r_good", "distance_r_good"}) {
     EXPECT_TRUE(json.at(key).is_null()) << key;
@@ -99,6 +100,27 @@ TEST(EvaluationScores, AnObjectTakenForBackgroundHasNoLocation) {
   const Locations objects{{1, 1, 1}}, slots{{0, 1, 1}, {1, 1, 1}};
   for (int i = 0; i < 3; ++i) add(scores, {1, 1, 1, 0}, {3, 3, 3, 3}, {}, {}, objects, slots);
   EXPECT_EQ(scores.angle_r(), std::nullopt);
+}
+
+TEST(EvaluationScores, WhatIsUnknownOfAnImageIsLeftOutAndTold) {
+  EvaluationScores scores;
+  add(scores, {0, 0, 1, 1}, {3, 3, 0, 0}, {0, 0, 0, 0}, {1, 2, 3, 4});  // no depth
+  add(scores, {}, {3, 3, 0, 0}, {1, 2, 3, 4}, {1, 2, 3, 4});            // no masks
+  add(scores, {0, 0, 1, 1}, {3, 3, 0, 0});
+  EXPECT_EQ(scores.images(), 3);
+  EXPECT_EQ(scores.skipped(), 0);
+  EXPECT_DOUBLE_EQ(*scores.ari_fg(), 1);
+  EXPECT_DOUBLE_EQ(*scores.iou(), 1);
+  EXPECT_DOUBLE_EQ(*scores.depth_r(), 1);
+  EXPECT_EQ(scores.to_json().at("without_masks"), 1);
+  EXPECT_EQ(scores.to_json().at("without_depth"), 2);
+  EXPECT_EQ(
+      scores.left_out(),
+      (std::vector<std::string>{"1 of 3 images have no true masks: left out of ARI, IoU, angles and distances",
+                                "2 of 3 images have no true depth: left out of the correlation of depth",
+                                "where objects are is not known: no angles and distances"}));
+  add(scores, {0, 1}, {3, 3}, {}, {}, {{1, 1, 1}}, {});  // known, though nothing was matched with it
+  EXPECT_EQ(scores.left_out().size(), 2u);
 }
 
 TEST(EvaluationScores, RefusesMapsThatDoNotFitAndStaysAsItWas) {

@@ -72,6 +72,7 @@ void run(const Options& o) {
   progress.clear();
   if (images < o.images)
     fmt::print(stderr, "{}: {} of {} images scored, there are no more\n", o.data, images, o.images);
+  for (const std::string& line : scores.left_out()) fmt::print(stderr, "{}: {}\n", o.data, line);
   fmt::print("{}", o.json ? scores.to_json().dump(2) + "\n" : scores.to_table());
   if (!o.grid.empty()) write_grid(o, std::move(grid), has_learned(model, Network::kObject));
 }

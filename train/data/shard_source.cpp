@@ -96,9 +96,9 @@ class TripletScene {
   const Lens& lens_;
 };
 
-/// What every triplet so far had.
+/// What is known of some triplet of a batch, or for cameras of all.
 struct Known {
-  bool cameras = true, depth = true, ids = true, objects = true;
+  bool cameras = true, depth = false, ids = false, objects = false;
 };
 
 void add_images(const TripletScene& scene, const std::array<uint16_t, 3>& frames, TripletBatch& batch) {
@@ -115,17 +115,27 @@ void add_cameras(const TripletScene& scene, const std::array<uint16_t, 3>& frame
   }
 }
 
-void add_truth(const TripletScene& scene, int middle, TripletBatch& batch, Known& known) {
-  const DepthAndIds layers = scene.layers(middle);
-  known.depth = known.depth && !layers.depth.pixels.empty();
-  known.ids = known.ids && !layers.ids.pixels.empty();
-  known.objects = known.objects && known.ids && scene.has_objects(middle);
-  append(batch.depth, layers.depth.pixels);
-  append(batch.label, layers.ids.pixels);
-  if (known.objects) batch.objects.push_back(scene.objects(middle, layers.ids));
+/// A plane, or as many of `unknown` where it has no pixels. Whether it has.
+template <class T>
+bool append_known(const Plane<T>& plane, std::size_t area, T unknown, std::vector<T>& to) {
+  const bool known = !plane.pixels.empty();
+  append(to, known ? plane.pixels : std::vector<T>(area, unknown));
+  return known;
 }
 
-/// What some triplets lack is left out of all.
+void add_truth(const TripletScene& scene, int middle, TripletBatch& batch, Known& known) {
+  const DepthAndIds layers = scene.layers(middle);
+  const auto area = static_cast<std::size_t>(batch.height) * static_cast<std::size_t>(batch.width);
+  const bool has_depth = append_known(layers.depth, area, 0.0f, batch.depth);
+  const bool has_ids = append_known(layers.ids, area, kUnknownLabel, batch.label);
+  const bool has_objects = has_ids && scene.has_objects(middle);
+  batch.objects.push_back(has_objects ? scene.objects(middle, layers.ids) : std::vector<ObjectTruth>{});
+  known.depth = known.depth || has_depth;
+  known.ids = known.ids || has_ids;
+  known.objects = known.objects || has_objects;
+}
+
+/// A pose that is unknown of one triplet is left out of all, and so is what nothing is known of.
 void keep_known(const Known& known, TripletBatch& batch) {
   if (!known.cameras)
     for (auto& poses : batch.poses) poses.clear();

@@ -15,7 +15,10 @@ struct ObjectTruth {
   uint64_t pixels = 0;               ///< that show it, by their centres; 0: out of sight
 };
 
-/// A batch of triplets of frames. What is unknown of one of them is empty.
+/// In place of the labels of a triplet of which they are unknown.
+inline constexpr uint32_t kUnknownLabel = UINT32_MAX;
+
+/// A batch of triplets of frames. What is unknown of all of them is empty.
 struct TripletBatch {
   int batch = 0, height = 0, width = 0;
   std::array<std::vector<float>, 3>
@@ -23,9 +26,9 @@ struct TripletBatch {
   Slice drawn;  ///< where images were left on the device, which `images` lacks then: a frame behind the other
   std::array<std::vector<float>, 3>
       poses;  ///< a frame each: (batch, 6) x, y, z, yaw, pitch, roll of the camera; unknown in evaluation only
-  std::vector<float> depth;     ///< (batch, height, width) of the middle frame, Euclidean; empty where unknown
-  std::vector<uint32_t> label;  ///< likewise: 0 background, i + 1 object i; empty where unknown
-  std::vector<std::vector<ObjectTruth>> objects;  ///< of each triplet; empty where unknown
+  std::vector<float> depth;     ///< (batch, height, width) of the middle frame, Euclidean; 0 where unknown
+  std::vector<uint32_t> label;  ///< likewise: 0 background, i + 1 object i
+  std::vector<std::vector<ObjectTruth>> objects;  ///< of each triplet; none where unknown
 
   /// Shows triplet `index` backwards in time.
   void reverse(int index);

@@ -45,6 +45,41 @@ std::array<double, 4> normalised(const std::array<double, 4>& q) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
+/// Whether the columns are of length 1, perpendicular and right-handed.
+bool is_rotation(const std::array<double, 9>& m) {
+  constexpr double kTolerance = 1e-3;  // of matrices in float32, which were multiplied a few times
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = i; j < 3; ++j) {
+      const double product = m[i] * m[j] + m[3 + i] * m[3 + j] + m[6 + i] * m[6 + j];
+      if (!(std::abs(product - (i == j ? 1 : 0)) <= kTolerance)) return false;
+    }
+  }
+  return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+             m[2] * (m[3] * m[7] - m[4] * m[6]) >
+         0;
+}
+
+/// The pose of a camera whose frame `turn` turns to the world's.
+template <class Turn>
+CameraPose pose_of(const Vector& position, const Turn& turn, CameraAxes camera, WorldAxes world) {
+  const auto seen = [&](const Vector& axis) {
+    return to_own_world(turn(to_their_camera(axis, camera)), world);
+  };
+  // Columns of Rz(yaw) Rx(pitch) Ry(roll): the camera's axes in the world.
+  const Vector right = seen({1, 0, 0}), forward = seen({0, 1, 0}), up = seen({0, 0, 1});
+  const Vector place = to_own_world(position, world);
+  const double level = std::hypot(forward[0], forward[1]);
+  CameraPose pose{place[0], place[1], place[2]};
+  pose[4] = std::atan2(forward[2], level);
+  if (level > 1e-9) {
+    pose[3] = std::atan2(-forward[0], forward[1]);
+    pose[5] = std::atan2(-right[2], up[2]);
+  } else {  // straight up or down: yaw and roll turn about the same axis
+    pose[3] = std::atan2(right[1], right[0]);
+  }
+  return pose;
+}
+
 }  // namespace
 
 std::map<std::string, CameraAxes> camera_axes_by_name() {
@@ -73,22 +108,19 @@ Vector to_own_world(const Vector& point, WorldAxes world) {
 CameraPose own_pose(const Vector& position, const std::array<double, 4>& wxyz, CameraAxes camera,
                     WorldAxes world) {
   const std::array<double, 4> q = normalised(wxyz);
-  const auto seen = [&](const Vector& axis) {
-    return to_own_world(rotated(q, to_their_camera(axis, camera)), world);
+  return pose_of(
+      position, [&](const Vector& v) { return rotated(q, v); }, camera, world);
+}
+
+CameraPose own_pose_of_matrix(const Vector& position, const std::array<double, 9>& rotation, CameraAxes camera,
+                              WorldAxes world) {
+  const std::array<double, 9>& m = rotation;
+  if (!is_rotation(m)) throw Error("the camera's matrix is no rotation");
+  const auto turn = [&](const Vector& v) {
+    return Vector{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+                  m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
   };
-  // Columns of Rz(yaw) Rx(pitch) Ry(roll): the camera's axes in the world.
-  const Vector right = seen({1, 0, 0}), forward = seen({0, 1, 0}), up = seen({0, 0, 1});
-  const Vector place = to_own_world(position, world);
-  const double level = std::hypot(forward[0], forward[1]);
-  CameraPose pose{place[0], place[1], place[2]};
-  pose[4] = std::atan2(forward[2], level);
-  if (level > 1e-9) {
-    pose[3] = std::atan2(-forward[0], forward[1]);
-    pose[5] = std::atan2(-right[2], up[2]);
-  } else {  // straight up or down: yaw and roll turn about the same axis
-    pose[3] = std::atan2(right[1], right[0]);
-  }
-  return pose;
+  return pose_of(position, turn, camera, world);
 }
 
 void planar_to_euclidean(Plane<float>& depth, double fov) {

@@ -36,6 +36,10 @@ std::array<double, 3> to_own_world(const std::array<double, 3>& point, WorldAxes
 CameraPose own_pose(const std::array<double, 3>& position, const std::array<double, 4>& wxyz, CameraAxes camera,
                     WorldAxes world);
 
+/// The same of a rotation matrix, row-major. Throws Error where it is none, to within 1e-3.
+CameraPose own_pose_of_matrix(const std::array<double, 3>& position, const std::array<double, 9>& rotation,
+                              CameraAxes camera, WorldAxes world);
+
 /// Turns distances along the optical axis to Euclidean ones; 0 stays 0. `fov`: vertical angle of view, radians.
 void planar_to_euclidean(Plane<float>& depth, double fov);
 

@@ -60,6 +60,7 @@ void scale_lengths(SceneFrame& frame, double scale) {
 SceneData fitted(SceneData scene, const SceneFit& fit) {
   const Cut cut = cut_for(scene, fit);
   const int height = scene.frames[0].image.height;
+  scene.scale *= fit.scale;
   for (SceneFrame& frame : scene.frames) {
     frame.image = resize(frame.image, cut.window, cut.height, cut.width);
     if (!frame.depth.pixels.empty()) frame.depth = resize_depth(frame.depth, cut.window, cut.height, cut.width);

@@ -25,6 +25,8 @@ class SceneCheck {
     check_key();
     if (!(scene_.fov > 0 && scene_.fov < std::numbers::pi))
       fail(fmt::format("the angle of view is {} and must lie between 0 and pi", scene_.fov));
+    if (!(scene_.scale > 0 && in_bounds(scene_.scale)))
+      fail(fmt::format("the scale is {} and must lie between 0 and {}", scene_.scale, kFarthest));
     if (scene_.frames.empty()) fail("no frames");
     if (scene_.frames.size() > kMostSceneFrames)
       fail(fmt::format("{} frames are more than {}", scene_.frames.size(), kMostSceneFrames));

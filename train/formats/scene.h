@@ -43,6 +43,8 @@ struct SceneData {
   std::string source;
   /// Vertical angle of view in radians, between 0 and pi. Pixels are square.
   double fov = 0;
+  /// Scene units in one unit of where the scene came from.
+  double scale = 1;
   std::vector<SceneFrame> frames;
   /// What object i is ("cube"); empty where unknown.
   std::vector<std::string> shapes;

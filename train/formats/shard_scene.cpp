@@ -118,6 +118,7 @@ std::vector<PlacedObject> ShardScene::objects(int frame) const {
 
 SceneData ShardScene::whole() const {
   SceneData scene{.key = sample_.key, .source = sample_.where("json"), .fov = fov()};
+  if (view_.contains("scale")) scene.scale = view_["scale"].number();
   for (int i = 0; sample_.parts.contains(fmt::format("{}.png", i)); ++i) {
     SceneFrame frame{.image = image(i), .camera = camera(i)};
     if (has_layers(i)) {
@@ -146,6 +147,7 @@ Sample shard_sample(const SceneData& scene) {
   Sample sample;
   sample.key = scene.key;
   ordered_json json{{"fov", scene.fov}};
+  if (scene.scale != 1) json["scale"] = scene.scale;
   for (const std::string& shape : scene.shapes) json["objects"].push_back({{"shape", shape}});
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     const SceneFrame& frame = scene.frames[i];

@@ -152,14 +152,23 @@ TEST_F(ShardSourceTest, OtherSizesAreResampled) {
   EXPECT_EQ(batch.label.size(), 24U);
 }
 
-TEST_F(ShardSourceTest, WithoutTruthItIsEmpty) {
+TEST_F(ShardSourceTest, WhatIsUnknownOfOneTripletIsMarkedAndOfAllLeftOut) {
   Sample blind = scene(1, 3);
   blind.parts.erase("1.exr");
   write({scene(0, 3), blind});
   const TripletBatch both = open(2, 1, Reading::kEvaluation).read(0);
   EXPECT_EQ(both.images[0].size(), 144U);
-  EXPECT_TRUE(both.depth.empty() && both.label.empty() && both.objects.empty());
-  EXPECT_EQ(open(1, 1, Reading::kEvaluation).read(0).objects.size(), 1U);
+  const std::vector<float> depth(both.depth.begin() + 24, both.depth.end());
+  const std::vector<uint32_t> label(both.label.begin() + 24, both.label.end());
+  EXPECT_EQ(depth, std::vector<float>(24, 0));
+  EXPECT_EQ(label, std::vector<uint32_t>(24, kUnknownLabel));
+  EXPECT_GT(both.depth[0], 0);
+  EXPECT_LT(both.label[0], 3U);
+  ASSERT_EQ(both.objects.size(), 2U);
+  EXPECT_FALSE(both.objects[0].empty());
+  EXPECT_TRUE(both.objects[1].empty());
+  const TripletBatch none = open(1, 1, Reading::kEvaluation).read(1);
+  EXPECT_TRUE(none.depth.empty() && none.label.empty() && none.objects.empty());
 }
 
 TEST_F(ShardSourceTest, SingleImagesOfUnknownCamerasAreEvaluated) {

@@ -71,6 +71,7 @@ TEST(FittedScene, LengthsAreScaled) {
   EXPECT_DOUBLE_EQ((*a.objects)[0].location[1], 3 * (*b.objects)[0].location[1]);
   EXPECT_EQ((*a.objects)[0].yaw, (*b.objects)[0].yaw);
   EXPECT_EQ(large.fov, scene.fov);
+  EXPECT_DOUBLE_EQ(fitted(large, {.scale = 0.5}).scale, 1.5);
 }
 
 }  // namespace

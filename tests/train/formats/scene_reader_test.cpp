@@ -53,6 +53,16 @@ TEST_P(WholeFormats, DoNotMixDataSets) {
   expect_error([&] { create_scenes(folder / "file", GetParam()); }, {"file"});
 }
 
+TEST(ShardScenes, RememberTheScale) {
+  const TempFolder folder;
+  SceneData scaled = small_scene(1, 3);
+  scaled.scale = 0.4;
+  write(folder / "set", "shards", {scaled, small_scene(2, 3)});
+  const auto reader = open_scenes(folder / "set");
+  EXPECT_EQ(reader->next()->scale, 0.4);
+  EXPECT_EQ(reader->next()->scale, 1);
+}
+
 TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {
   const TempFolder folder;
   SceneData narrow = small_scene(2, 3);

@@ -42,6 +42,8 @@ TEST(CheckScene, NamesWhatIsWrong) {
   refuse([](SceneData& s) { s.fov = 0; }, "angle of view");
   refuse([](SceneData& s) { s.fov = 3.2; }, "angle of view");
   refuse([&](SceneData& s) { s.fov = nan; }, "angle of view");
+  refuse([](SceneData& s) { s.scale = 0; }, "scale");
+  refuse([&](SceneData& s) { s.scale = nan; }, "scale");
   refuse([](SceneData& s) { s.frames.clear(); }, "no frames");
   refuse([](SceneData& s) { s.frames.resize(kMostSceneFrames + 1, s.frames[0]); }, "121 frames");
   refuse([](SceneData& s) { s.frames[0].image = {}; }, "frame 0: the image has no pixels");

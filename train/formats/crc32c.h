@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace vkopple {
+
+/// The cyclic redundancy check of Castagnoli's polynomial, as RFC 3720 (iSCSI) defines it.
+std::uint32_t crc32c(std::span<const std::byte> bytes);
+
+/// As TFRecord files store it: rotated and moved, so that the check of bytes which hold checks stays useful.
+std::uint32_t masked_crc32c(std::span<const std::byte> bytes);
+
+}  // namespace vkopple

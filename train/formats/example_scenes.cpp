@@ -1,0 +1,111 @@
+#include "train/formats/example_scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "train/image_io.h"
+#include "train/quote.h"
+
+namespace vkopple {
+namespace {
+
+constexpr const char* kNone = "-";
+
+/// "movi_e-train_tfrecord-00003-of-01024-000012"
+std::string key_of(const TfRecord& record) {
+  constexpr std::size_t kLongest = 64;
+  std::string name = record.file.filename().string().substr(0, kLongest);
+  std::replace_if(
+      name.begin(), name.end(),
+      [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_'; }, '_');
+  return fmt::format("{}-{:06}", name, record.index);
+}
+
+}  // namespace
+
+std::vector<NamedHelp> field_help(const std::vector<UsualFeature>& features) {
+  std::vector<NamedHelp> all;
+  for (const UsualFeature& f : features)
+    all.push_back(
+        {f.ours, fmt::format("{}; usually {}{}", f.holds, f.usual, f.needed ? "" : ", may be absent: -")});
+  return all;
+}
+
+FeatureNames::FeatureNames(const std::vector<UsualFeature>& features, const FormatOptions& options) {
+  for (const UsualFeature& feature : features) {
+    const std::string name = options.field(feature.ours, feature.usual);
+    if (name != kNone)
+      names_.emplace(feature.ours, name);
+    else if (feature.needed)
+      throw UsageError(fmt::format("--map {}=-: this format can't do without it", feature.ours));
+  }
+}
+
+void FeatureNames::check(const Example& first) const {
+  for (const auto& [ours, name] : names_) {
+    if (first.contains(name)) continue;
+    throw Error(fmt::format(
+        "{}: no feature {} for {}; give its name by --map {}=NAME (- where there is none). There are {}",
+        first.where(), quote(name), ours, ours, first.listed()));
+  }
+}
+
+const std::string& FeatureNames::operator[](const std::string& ours) const {
+  const auto found = names_.find(ours);
+  if (found == names_.end()) throw Error(fmt::format("the feature {} was given up", ours));
+  return found->second;
+}
+
+ExampleScenes::ExampleScenes(const std::filesystem::path& path, FeatureNames names, Convert convert)
+    : records_(find_tfrecords(path)), names_(std::move(names)), convert_(std::move(convert)) {}
+
+std::optional<SceneData> ExampleScenes::next() {
+  const std::optional<TfRecord> record = records_.next();
+  if (!record) return std::nullopt;
+  const Example example(*record);
+  if (!checked_) names_.check(example);
+  checked_ = true;
+  SceneData scene = convert_(example, names_);
+  scene.key = key_of(*record);
+  scene.source = record->where();
+  return scene;
+}
+
+std::string place_of(const Example& example, const std::string& feature, std::size_t index) {
+  return fmt::format("{}[{}]", example.where(feature), index);
+}
+
+std::vector<SceneFrame> decode_frames(const Example& example, const std::string& feature) {
+  constexpr std::size_t kMostPixels = std::size_t{1} << 26;
+  const auto pictures = example.bytes(feature);
+  if (pictures.size() > kMostSceneFrames)
+    throw Error(fmt::format("{}: {} frames are more than {}", example.where(feature), pictures.size(),
+                            kMostSceneFrames));
+  std::vector<SceneFrame> frames;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const std::string where = place_of(example, feature, i);
+    RgbImage image = decode_rgb(as_bytes(pictures[i]), where);
+    if (image.pixels.size() / 3 > kMostPixels / pictures.size())
+      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller", where,
+                              pictures.size(), image.width, image.height));
+    if (i > 0) image = fitting(std::move(image), frames, where);
+    frames.push_back({.image = std::move(image)});
+  }
+  return frames;
+}
+
+bool first_example_has(const std::filesystem::path& path, const std::vector<std::string>& features) {
+  try {
+    const std::optional<TfRecord> record = TfRecordReader(find_tfrecords(path)).next();
+    if (!record) return false;
+    const Example example(*record);
+    return std::all_of(features.begin(), features.end(),
+                       [&](const auto& name) { return example.contains(name); });
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace vkopple

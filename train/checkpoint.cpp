@@ -17,45 +17,32 @@
 namespace vkopple {
 namespace {
 
+using Metadata = std::map<std::string, std::string>;
+
 constexpr const char* kFormat = "vkopple checkpoint";
 constexpr const char* kVersion = "1";
 
 std::string shown(const std::filesystem::path& path) { return one_line(path.string()); }
 
-std::string metadata_text(const SafetensorsFile& file, const std::string& key) {
-  const auto found = file.metadata().find(key);
-  if (found == file.metadata().end())
-    throw Error(fmt::format("{}: is no checkpoint of vkopple: its metadata lack {}", shown(file.path()), key));
+std::string metadata_text(const Metadata& metadata, const std::filesystem::path& path, const std::string& key) {
+  const auto found = metadata.find(key);
+  if (found == metadata.end())
+    throw Error(fmt::format("{}: is no checkpoint of vkopple: its metadata lack {}", shown(path), key));
   return found->second;
 }
 
-uint64_t metadata_number(const SafetensorsFile& file, const std::string& key) {
-  const std::string text = metadata_text(file, key);
+uint64_t metadata_number(const Metadata& metadata, const std::filesystem::path& path, const std::string& key) {
+  const std::string text = metadata_text(metadata, path, key);
   uint64_t number = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (failure != std::errc{} || end != text.data() + text.size())
-    throw Error(fmt::format("{}: {} in its metadata must be a whole number, not {}", shown(file.path()), key,
-                            quote(text)));
+    throw Error(
+        fmt::format("{}: {} in its metadata must be a whole number, not {}", shown(path), key, quote(text)));
   return number;
 }
 
 CheckpointHeader header_of(const SafetensorsFile& file) {
-  const std::string format = metadata_text(file, "format");
-  const std::string version = metadata_text(file, "format_version");
-  if (format != kFormat || version != kVersion)
-    throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(file.path()),
-                            quote(format), quote(version), kFormat, kVersion));
-  CheckpointHeader header;
-  header.config = Config::parse(metadata_text(file, "config"), file.path().string() + ": config");
-  header.position = {.step = metadata_number(file, "step"),
-                     .stage = metadata_number(file, "stage"),
-                     .stage_step = metadata_number(file, "stage_step"),
-                     .seed = metadata_number(file, "seed"),
-                     .data = metadata_text(file, "data")};
-  if (header.position.stage >= header.config.stages().size())
-    throw Error(fmt::format("{}: is in stage {} of a configuration of {}", shown(file.path()),
-                            header.position.stage, header.config.stages().size()));
-  return header;
+  return parse_checkpoint_header(file.metadata(), file.path());
 }
 
 /// Every tensor that is wanted is there, nothing else is but what is `allowed`, and all have their shapes.
@@ -88,8 +75,7 @@ bool is_never_negative(const std::string& name) {
 void read_entries(const SafetensorsFile& file, ModelStore& store, const std::vector<LayoutEntry>& entries) {
   for (const LayoutEntry& entry : entries) {
     const std::vector<float> values = file.read_floats(entry.name, entry.stored_shape());
-    if (is_never_negative(entry.name) && *std::min_element(values.begin(), values.end()) < 0)
-      throw Error(fmt::format("{}: {} holds a negative number", shown(file.path()), entry.name));
+    require_usable(entry.name, values, file.path());
     store.write(entry, values);
   }
 }
@@ -110,6 +96,44 @@ std::map<std::string, StoredShape> weight_shapes(const ModelLayout& layout) {
 
 }  // namespace
 
+CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::filesystem::path& path) {
+  const std::string format = metadata_text(metadata, path, "format");
+  const std::string version = metadata_text(metadata, path, "format_version");
+  if (format != kFormat || version != kVersion)
+    throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(path),
+                            quote(format), quote(version), kFormat, kVersion));
+  const auto number = [&](const char* key) { return metadata_number(metadata, path, key); };
+  CheckpointHeader header;
+  header.config = Config::parse(metadata_text(metadata, path, "config"), path.string() + ": config");
+  header.position = {.step = number("step"),
+                     .stage = number("stage"),
+                     .stage_step = number("stage_step"),
+                     .seed = number("seed"),
+                     .data = metadata_text(metadata, path, "data")};
+  if (header.position.stage >= header.config.stages().size())
+    throw Error(fmt::format("{}: is in stage {} of a configuration of {}", shown(path), header.position.stage,
+                            header.config.stages().size()));
+  return header;
+}
+
+Metadata checkpoint_metadata(const CheckpointHeader& header) {
+  const TrainingPosition& position = header.position;
+  return {{"format", kFormat},
+          {"format_version", kVersion},
+          {"config", header.config.to_json()},
+          {"step", std::to_string(position.step)},
+          {"stage", std::to_string(position.stage)},
+          {"stage_step", std::to_string(position.stage_step)},
+          {"seed", std::to_string(position.seed)},
+          {"data", position.data}};
+}
+
+void require_usable(const std::string& name, std::span<const float> values, const std::filesystem::path& path) {
+  require_finite(name, values, path);
+  if (is_never_negative(name) && std::any_of(values.begin(), values.end(), [](float v) { return v < 0; }))
+    throw Error(fmt::format("{}: {} holds a negative number", shown(path), name));
+}
+
 void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
                      const TrainingPosition& position) {
   std::map<std::string, StoredTensor> tensors;
@@ -122,16 +146,7 @@ void save_checkpoint(const std::filesystem::path& path, const ModelStore& store,
   }
   for (const auto& [name, count] : store.batch_counters())
     tensors.emplace(name, StoredTensor::of({}, std::span(&count, 1)));
-  write_safetensors(path,
-                    {{"format", kFormat},
-                     {"format_version", kVersion},
-                     {"config", config.to_json()},
-                     {"step", std::to_string(position.step)},
-                     {"stage", std::to_string(position.stage)},
-                     {"stage_step", std::to_string(position.stage_step)},
-                     {"seed", std::to_string(position.seed)},
-                     {"data", position.data}},
-                    tensors);
+  write_safetensors(path, checkpoint_metadata({config, position}), tensors);
 }
 
 CheckpointHeader read_checkpoint_header(const std::filesystem::path& path) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <span>
+#include <string>
 
 #include "models/config.h"
 #include "train/model_store.h"
@@ -23,6 +26,14 @@ struct CheckpointHeader {
   TrainingPosition position;
 };
 CheckpointHeader read_checkpoint_header(const std::filesystem::path& path);
+/// The same from a file's metadata, and back.
+CheckpointHeader parse_checkpoint_header(const std::map<std::string, std::string>& metadata,
+                                         const std::filesystem::path& path);
+std::map<std::string, std::string> checkpoint_metadata(const CheckpointHeader& header);
+
+/// Refuses values of a tensor of that name that no checkpoint may hold: none that are not finite, and no
+/// negative variances.
+void require_usable(const std::string& name, std::span<const float> values, const std::filesystem::path& path);
 
 /// Fills a store with all of a checkpoint, to go on training. The checkpoint must be of this configuration.
 TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& store, const Config& config);

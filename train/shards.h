@@ -12,6 +12,8 @@
 
 namespace vkopple {
 
+class ArchiveWriter;
+
 /// What belongs together in a data set of tar shards (the WebDataset convention): the members of one tar file
 /// whose names are equal up to the first dot. "000012.json", "000012.0.png" and "000012.0.exr" are one sample
 /// with the key "000012" and the parts "json", "0.png" and "0.exr".
@@ -56,8 +58,6 @@ class ShardWriter {
   std::size_t shards() const { return shards_; }  ///< complete ones
 
  private:
-  class Tar;
-
   void check_usable() const;
 
   std::filesystem::path folder_;
@@ -66,7 +66,7 @@ class ShardWriter {
   std::size_t shards_ = 0;
   bool usable_ = true;          ///< false once a sample or shard was left half written
   std::set<std::string> keys_;  ///< of the open shard
-  std::unique_ptr<Tar> tar_;
+  std::unique_ptr<ArchiveWriter> tar_;
 };
 
 /// What a shard may hold before it is refused.

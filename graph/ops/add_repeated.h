@@ -10,6 +10,7 @@ class AddRepeated : public Op {
  public:
   explicit AddRepeated(int64_t inner) : inner_(inner) {}
   std::string_view name() const override { return "add_repeated"; }
+  int64_t inner() const { return inner_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   int in_place() const override { return 0; }

@@ -24,6 +24,7 @@ class BatchNorm : public Op {
  public:
   explicit BatchNorm(const BatchNormOptions& options);
   std::string_view name() const override { return "batch_norm"; }
+  const BatchNormOptions& options() const { return options_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool differentiable(size_t input) const override { return input < 3; }

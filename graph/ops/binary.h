@@ -14,6 +14,7 @@ class Binary : public Op {
   static constexpr size_t kMostAxes = 5;
   explicit Binary(BinaryKind kind) : kind_(kind) {}
   std::string_view name() const override { return "binary"; }
+  BinaryKind kind() const { return kind_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   int in_place() const override { return 0; }

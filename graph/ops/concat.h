@@ -10,6 +10,7 @@ class Concat : public Op {
   static constexpr size_t kMostInputs = 6;
   explicit Concat(size_t axis) : axis_(axis) {}
   std::string_view name() const override { return "concat"; }
+  size_t axis() const { return axis_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool recomputes() const override { return true; }

@@ -21,6 +21,7 @@ class Conv2d : public Op {
  public:
   explicit Conv2d(Conv2dOptions options, bool has_bias) : options_(std::move(options)), has_bias_(has_bias) {}
   std::string_view name() const override { return "conv2d"; }
+  const Conv2dOptions& options() const { return options_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

@@ -10,6 +10,8 @@ class Crop : public Op {
   Crop(int64_t top, int64_t left, int64_t height, int64_t width)
       : top_(top), left_(left), height_(height), width_(width) {}
   std::string_view name() const override { return "crop"; }
+  int64_t top() const { return top_; }
+  int64_t left() const { return left_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool recomputes() const override { return true; }

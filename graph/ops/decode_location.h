@@ -16,6 +16,7 @@ class DecodeLocation : public Op {
  public:
   explicit DecodeLocation(const LocationRange& range) : range_(range) {}
   std::string_view name() const override { return "decode_location"; }
+  const LocationRange& range() const { return range_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

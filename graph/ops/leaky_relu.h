@@ -9,6 +9,7 @@ class LeakyRelu : public Op {
  public:
   explicit LeakyRelu(float slope) : slope_(slope) {}
   std::string_view name() const override { return "leaky_relu"; }
+  float slope() const { return slope_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   int in_place() const override { return 0; }

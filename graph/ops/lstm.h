@@ -11,6 +11,7 @@ class Lstm : public Op {
  public:
   explicit Lstm(int64_t steps);
   std::string_view name() const override { return "lstm"; }
+  int64_t steps() const { return steps_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

@@ -12,6 +12,7 @@ class Permute : public Op {
  public:
   explicit Permute(std::vector<size_t> order) : order_(std::move(order)) {}
   std::string_view name() const override { return "permute"; }
+  const std::vector<size_t>& order() const { return order_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

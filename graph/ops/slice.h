@@ -9,6 +9,9 @@ class SliceOp : public Op {
  public:
   SliceOp(size_t axis, int64_t begin, int64_t count) : axis_(axis), begin_(begin), count_(count) {}
   std::string_view name() const override { return "slice"; }
+  size_t axis() const { return axis_; }
+  int64_t begin() const { return begin_; }
+  int64_t count() const { return count_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

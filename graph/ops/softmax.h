@@ -10,6 +10,8 @@ class Softmax : public Op {
  public:
   Softmax(size_t axis, bool log) : axis_(axis), log_(log) {}
   std::string_view name() const override { return "softmax"; }
+  size_t axis() const { return axis_; }
+  bool log() const { return log_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

@@ -5,9 +5,9 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 
 #include "tests/support/expect_error.h"
+#include "tests/support/unhex.h"
 #include "tests/train/pickle/samples.h"
 #include "train/pickle/numpy_array.h"
 
@@ -15,15 +15,8 @@ namespace vkopple {
 namespace {
 
 using test::expect_error;
+using test::unhex;
 using testing::ElementsAre;
-
-std::vector<std::byte> unhex(std::string_view digits) {
-  std::vector<std::byte> bytes;
-  for (size_t i = 0; i < digits.size(); i += 2)
-    bytes.push_back(
-        static_cast<std::byte>(std::strtoul(std::string(digits.substr(i, 2)).c_str(), nullptr, 16)));
-  return bytes;
-}
 
 std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
 

@@ -1,0 +1,206 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "graph/ops/leaky_relu.h"
+#include "onnx.pb.h"
+#include "tests/support/exchange_model.h"
+#include "tests/support/expect_error.h"
+#include "tests/support/temp_folder.h"
+#include "train/atomic_file.h"
+#include "train/exchange/onnx/onnx_export.h"
+#include "train/exchange/onnx/onnx_graph.h"
+#include "train/exchange/onnx/onnx_translators.h"
+
+namespace vkopple {
+namespace {
+
+using test::TempFolder;
+using testing::ElementsAre;
+
+using Ints = std::vector<std::int64_t>;
+
+onnx::ModelProto exported(const ModelWeights& weights, std::int64_t batch = 1, bool bgr = false) {
+  const TempFolder folder;
+  export_onnx(folder / "m.onnx", weights, batch, bgr);
+  const auto bytes = read_file(folder / "m.onnx", size_t{64} << 20);
+  onnx::ModelProto model;
+  EXPECT_TRUE(model.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())));
+  return model;
+}
+
+Ints sizes(const onnx::ValueInfoProto& info) {
+  Ints dims;
+  for (const auto& dim : info.type().tensor_type().shape().dim()) dims.push_back(dim.dim_value());
+  return dims;
+}
+
+/// What a graph says of its tensors, and how often it uses each kind of node.
+struct Inspection {
+  std::set<std::string> defined;
+  std::map<std::string, int> kinds;
+};
+
+/// Every name is defined once, and before it is used; constants have the bytes of their shapes.
+Inspection inspect(const onnx::GraphProto& graph) {
+  Inspection seen;
+  const auto define = [&](const std::string& name) { EXPECT_TRUE(seen.defined.insert(name).second) << name; };
+  for (const auto& input : graph.input()) define(input.name());
+  for (const auto& constant : graph.initializer()) {
+    define(constant.name());
+    const std::int64_t count =
+        std::accumulate(constant.dims().begin(), constant.dims().end(), std::int64_t{1}, std::multiplies<>());
+    const std::int64_t element = constant.data_type() == onnx::TensorProto::INT64 ? 8 : 4;
+    EXPECT_EQ(static_cast<std::int64_t>(constant.raw_data().size()), count * element) << constant.name();
+  }
+  std::set<std::string> names;
+  for (const auto& node : graph.node()) {
+    EXPECT_TRUE(names.insert(node.name()).second) << node.name();
+    for (const auto& input : node.input())
+      EXPECT_TRUE(seen.defined.contains(input)) << node.name() << ": " << input;
+    for (const auto& output : node.output()) define(output);
+    ++seen.kinds[node.op_type()];
+  }
+  for (const auto& output : graph.output()) EXPECT_TRUE(seen.defined.contains(output.name())) << output.name();
+  return seen;
+}
+
+TEST(OnnxExport, TheModelIsWhole) {
+  const ModelWeights weights = test::drawn_weights();
+  const onnx::ModelProto model = exported(weights, 2);
+  EXPECT_EQ(model.ir_version(), 8);
+  ASSERT_EQ(model.opset_import_size(), 1);
+  EXPECT_EQ(model.opset_import(0).version(), 17);
+  const Inspection seen = inspect(model.graph());
+  // Depth network: 6 Downs of two convolutions, 6 Ups of one and a transposed one, the first and the last.
+  // Object network: 7 Downs, 7 Ups whose convolution is taken apart for skip and own part, 6 of the ASPP, the
+  // first and the last.
+  EXPECT_EQ(seen.kinds.at("Conv"), (2 * 6 + 6 + 2) + (2 * 7 + 2 * 7 + 6 + 2));
+  EXPECT_EQ(seen.kinds.at("ConvTranspose"), 6 + 7);
+  EXPECT_EQ(seen.kinds.at("BatchNormalization"), (2 * 5 + 2 * 5) + (2 * 7 + 2 * 7 + 6));
+  EXPECT_EQ(seen.kinds.at("LSTM"), 1);
+  std::map<std::string, Ints> ends;
+  for (const auto* list : {&model.graph().input(), &model.graph().output()})
+    for (const auto& info : *list) ends[info.name()] = sizes(info);
+  EXPECT_EQ(ends, (std::map<std::string, Ints>{{"images", {2, 3, 16, 16}},
+                                               {"depth", {2, 1, 16, 16}},
+                                               {"masks", {2, 3, 16, 16}},
+                                               {"location", {2, 2, 3}},
+                                               {"log_pose", {2, 2, 12}},
+                                               {"code", {2, 2, 12}}}));
+  std::map<std::string, std::string> said;
+  for (const auto& entry : model.metadata_props()) said[entry.key()] = entry.value();
+  EXPECT_EQ(said.at("config"), weights.header.config.to_json());
+  EXPECT_EQ(said.at("colours"), "rgb");
+}
+
+/// All weights of the two networks that single images pass are there under their names, but the LSTM's, whose
+/// gates lie in another order.
+TEST(OnnxExport, HoldsTheWeights) {
+  const ModelWeights weights = test::drawn_weights();
+  const onnx::ModelProto model = exported(weights);
+  std::map<std::string, const onnx::TensorProto*> constants;
+  for (const auto& constant : model.graph().initializer()) constants[constant.name()] = &constant;
+  for (const auto& [name, tensor] : weights.tensors) {
+    const bool other = name.find("imag_net") != std::string::npos || name.find(".rnn.") != std::string::npos ||
+                       name.ends_with("num_batches_tracked");
+    EXPECT_EQ(constants.contains(name), !other) << name;
+    if (other || !constants.contains(name)) continue;
+    const std::string& raw = constants.at(name)->raw_data();
+    EXPECT_EQ(std::memcmp(raw.data(), tensor.bytes.data(), raw.size()), 0) << name;
+    EXPECT_TRUE(std::equal(tensor.shape.begin(), tensor.shape.end(), constants.at(name)->dims().begin(),
+                           constants.at(name)->dims().end()))
+        << name;
+  }
+}
+
+TEST(OnnxExport, SwapsColours) {
+  const ModelWeights weights = test::drawn_weights();
+  const std::string name = "depth_model.depth_net.inc.conv.0.weight";
+  for (const bool bgr : {false, true}) {
+    const onnx::ModelProto model = exported(weights, 1, bgr);
+    for (const auto& constant : model.graph().initializer()) {
+      if (constant.name() != name) continue;
+      const auto& bytes = weights.tensors.at(name).bytes;
+      EXPECT_EQ(std::memcmp(constant.raw_data().data(), bytes.data(), bytes.size()) == 0, !bgr);
+    }
+  }
+}
+
+/// Values of small graphs, and the nodes that they become.
+class OnnxGraphTest : public testing::Test {
+ protected:
+  OnnxGraph written() {
+    OnnxGraph made(graph_, weights_, out_);
+    for (const auto& [name, value] : graph_.inputs()) made.define(value, name);
+    return made;
+  }
+  std::vector<std::string> kinds() const {
+    std::vector<std::string> types;
+    for (const auto& node : out_.node()) types.push_back(node.op_type());
+    return types;
+  }
+  /// The whole numbers that input `i` of node `n` is.
+  Ints ints(int n, int i) const {
+    for (const auto& constant : out_.initializer()) {
+      if (constant.name() != out_.node(n).input(i)) continue;
+      Ints values(constant.raw_data().size() / sizeof(std::int64_t));
+      std::memcpy(values.data(), constant.raw_data().data(), constant.raw_data().size());
+      return values;
+    }
+    return {};
+  }
+
+  Graph graph_;
+  std::map<std::string, StoredTensor> weights_;
+  onnx::GraphProto out_;
+};
+
+TEST_F(OnnxGraphTest, ViewsOfRowsAreSlicesOfTheFlatTensor) {
+  const Value x = graph_.input("x", row_major({4, 2, 32}));
+  const Value part = graph_.slice_outer(x, 1, 2);
+  const Value again = graph_.reshape(graph_.slice_outer(part, 1, 1), row_major({8, 8}));
+  OnnxGraph onnx = written();
+  onnx.tensor(again.id());
+  EXPECT_THAT(kinds(), ElementsAre("Reshape", "Slice", "Reshape"));
+  EXPECT_THAT(ints(0, 1), ElementsAre(-1));
+  EXPECT_THAT(ints(1, 1), ElementsAre(128));
+  EXPECT_THAT(ints(1, 2), ElementsAre(192));
+  EXPECT_THAT(ints(2, 1), ElementsAre(8, 8));
+  const std::string first = onnx.tensor(part.id());
+  EXPECT_EQ(onnx.tensor(part.id()), first);
+}
+
+TEST_F(OnnxGraphTest, ViewsOfChannelsAreSlicesOfSamples) {
+  const Value x = graph_.input("x", channels4({3, 5, 4, 8}));
+  const Value part = graph_.slice_outer(x, 2, 1);
+  OnnxGraph onnx = written();
+  onnx.tensor(part.id());
+  EXPECT_THAT(kinds(), ElementsAre("Slice"));
+  EXPECT_THAT(ints(0, 1), ElementsAre(2));
+  EXPECT_THAT(ints(0, 2), ElementsAre(3));
+  EXPECT_THAT(ints(0, 3), ElementsAre(0));
+  const Value folded = graph_.reshape(x, channels4({1, 8, 12, 8}));
+  test::expect_error([&] { onnx.tensor(folded.id()); }, {"(1, 8, 12, 8)", "no form in ONNX"});
+}
+
+TEST_F(OnnxGraphTest, RefusesWhatHasNoForm) {
+  EXPECT_EQ(find_onnx_translator("splat"), nullptr);
+  const Value x = graph_.input("x", row_major({2, 3}));
+  const Value made = leaky_relu(x, 0.1F);
+  OnnxGraph onnx = written();
+  test::expect_error([&] { onnx.tensor(made.id()); }, {"(2, 3)", "before it is made"});
+  test::expect_error([&] { (void)onnx.weight(x.id()); }, {"(2, 3) is no weight"});
+  const Value w = graph_.parameter("g", "w", {2});
+  OnnxGraph without(graph_, weights_, out_);
+  test::expect_error([&] { (void)without.weight(w.id()); }, {"no values of the weight w"});
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -1,0 +1,74 @@
+#include "graph/ops/add_repeated.h"
+#include "graph/ops/binary.h"
+#include "graph/ops/decode_location.h"
+#include "graph/ops/leaky_relu.h"
+#include "graph/ops/sigmoid.h"
+#include "graph/ops/softmax.h"
+#include "train/exchange/onnx/onnx_translators.h"
+
+namespace vkopple {
+
+void leaky_relu_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const float slope = op_of<LeakyRelu>(node).slope();
+  onnx.define(node.outputs[0], onnx.add("LeakyRelu", inputs_of(onnx, node), {{"alpha", slope}}));
+}
+
+void sigmoid_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const auto& op = op_of<Sigmoid>(node);
+  onnx.define(node.outputs[0],
+              onnx.affine(onnx.add("Sigmoid", inputs_of(onnx, node)), op.scale(), op.offset()));
+}
+
+void softmax_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const auto& op = op_of<Softmax>(node);
+  const auto axis = static_cast<std::int64_t>(op.axis());
+  onnx.define(node.outputs[0],
+              onnx.add(op.log() ? "LogSoftmax" : "Softmax", inputs_of(onnx, node), {{"axis", axis}}));
+}
+
+void binary_to_onnx(OnnxGraph& onnx, const Node& node) {
+  constexpr std::string_view kTypes[] = {"Add", "Sub", "Mul"};
+  const auto kind = static_cast<std::size_t>(op_of<Binary>(node).kind());
+  onnx.define(node.outputs[0], onnx.add(kTypes[kind], inputs_of(onnx, node)));
+}
+
+/// a's samples are ordered (f, k, i), b's (f, i).
+void add_repeated_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const std::int64_t inner = op_of<AddRepeated>(node).inner();
+  const Shape& a = onnx.shape(node.inputs[0]);
+  const std::int64_t frames = onnx.shape(node.inputs[1])[0] / inner;
+  const std::int64_t runs = a[0] / (frames * inner);
+  const auto apart = [&](int input, std::int64_t times) {
+    return onnx.reshape(onnx.tensor(input), {frames, times, inner, a[1], a[2], a[3]});
+  };
+  const std::string sum = onnx.add("Add", {apart(node.inputs[0], runs), apart(node.inputs[1], 1)});
+  onnx.define(node.outputs[0], onnx.reshape(sum, stored(a)));
+}
+
+void slot_masks_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const Shape& masks = onnx.shape(node.outputs[0]);
+  const std::string logits =
+      onnx.add("Transpose", inputs_of(onnx, node), {{"perm", std::vector<std::int64_t>{1, 0, 2, 3}}});
+  const std::vector<float> zeros(static_cast<std::size_t>(masks.elements() / masks[1]), 0.0F);
+  const std::string background = onnx.floats(stored(masks.with(1, 1)), zeros);
+  const std::string all = onnx.add("Concat", {logits, background}, {{"axis", std::int64_t{1}}});
+  onnx.define(node.outputs[0], onnx.add("Softmax", {all}, {{"axis", std::int64_t{1}}}));
+}
+
+/// docs/model.md §2.2: θ = 0.6 fov (2σ(l₀) − 1), ρ = max_depth σ(l₁), (ρ sin θ, ρ cos θ, max_height (2σ(l₂) −
+/// 1)).
+void decode_location_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const LocationRange& range = op_of<DecodeLocation>(node).range();
+  const std::string share = onnx.add("Sigmoid", {onnx.slice(onnx.tensor(node.inputs[0]), 2, 0, 3)});
+  const auto scaled = [&](std::int64_t number, float scale, float offset) {
+    return onnx.affine(onnx.slice(share, 2, number, 1), scale, offset);
+  };
+  const std::string angle = scaled(0, 1.2F * range.fov, -0.6F * range.fov);
+  const std::string distance = scaled(1, range.max_depth, 0);
+  const std::string z = scaled(2, 2 * range.max_height, -range.max_height);
+  const std::string x = onnx.add("Mul", {distance, onnx.add("Sin", {angle})});
+  const std::string y = onnx.add("Mul", {distance, onnx.add("Cos", {angle})});
+  onnx.define(node.outputs[0], onnx.add("Concat", {x, y, z}, {{"axis", std::int64_t{2}}}));
+}
+
+}  // namespace vkopple

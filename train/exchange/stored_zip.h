@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace vkopple {
+
+/// The members of a zip file by their full names. All must be stored, not compressed, and are held in memory:
+/// together they are no larger than the file. Throws Error that names the file, and the member where there is
+/// one.
+std::map<std::string, std::vector<std::byte>> read_stored_zip(const std::filesystem::path& path);
+
+/// Whether a file starts as a zip does. Throws Error where it can't be read.
+bool is_zip(const std::filesystem::path& path);
+
+}  // namespace vkopple

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -13,12 +14,16 @@ using test::expect_failure;
 using test::expect_success;
 using test::run_vkopple;
 
-/// Commands are found by their files.
+/// Commands are found by their files, in whose names '_' stands for '-'.
 std::set<std::string> command_names() {
   std::set<std::string> names;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::filesystem::path(VKOPPLE_SOURCE_DIR) / "tools" / "commands"))
-    if (entry.path().extension() == ".cpp") names.insert(entry.path().stem());
+       std::filesystem::directory_iterator(std::filesystem::path(VKOPPLE_SOURCE_DIR) / "tools" / "commands")) {
+    if (entry.path().extension() != ".cpp") continue;
+    std::string name = entry.path().stem();
+    std::replace(name.begin(), name.end(), '_', '-');
+    names.insert(name);
+  }
   return names;
 }
 

@@ -8,6 +8,7 @@
 #include "tests/support/write_grey16.h"
 #include "train/atomic_file.h"
 #include "train/formats/scene_reader.h"
+#include "train/formats/trajectory.h"
 #include "train/image_io.h"
 
 namespace vkopple {
@@ -152,6 +153,17 @@ TEST_F(TumTest, PicturesGetTheNearestPose) {
   const auto graphics = open({{"camera", "graphics"}})->next();
   EXPECT_NEAR(std::abs((*graphics->frames[0].camera)[5]), 3.141592653589793, 1e-7)
       << "upside down by other axes";
+}
+
+TEST_F(TumTest, TrajectoriesAreSortedAndSearchedByTime) {
+  write_file(folder_ / "t.txt", "3 0 0 0 0 0 0 1\r\n# x\n\n1,2,3,4,0.1,0.2,0.3,0.4\n2\t0 0 0  0 0 0 1");
+  const auto poses = read_trajectory(folder_ / "t.txt");
+  ASSERT_EQ(poses.size(), 3U);
+  EXPECT_EQ(poses[0].time, 1);
+  EXPECT_EQ(poses[0].position, (std::array<double, 3>{2, 3, 4}));
+  EXPECT_EQ(poses[0].wxyz, (std::array<double, 4>{0.4, 0.1, 0.2, 0.3}));
+  for (const auto& [time, nearest] : {std::pair{0., 1.}, {1.5, 1.}, {1.6, 2.}, {2., 2.}, {2.6, 3.}, {9., 3.}})
+    EXPECT_EQ(nearest_pose(poses, time).time, nearest) << time;
 }
 
 TEST_F(TumTest, DepthPicturesAreReadWhereThereAreSome) {

@@ -34,28 +34,28 @@ std::vector<NamedHelp> field_help(const std::vector<UsualFeature>& features) {
 }
 
 FeatureNames::FeatureNames(const std::vector<UsualFeature>& features, const FormatOptions& options) {
-  for (const UsualFeature& feature : features) {
-    const std::string name = options.field(feature.ours, feature.usual);
-    if (name != kNone)
-      names_.emplace(feature.ours, name);
+  for (UsualFeature feature : features) {
+    feature.usual = options.field(feature.ours, feature.usual);
+    if (feature.usual != kNone)
+      features_.emplace(feature.ours, feature);
     else if (feature.needed)
       throw UsageError(fmt::format("--map {}=-: this format can't do without it", feature.ours));
   }
 }
 
 void FeatureNames::check(const Example& first) const {
-  for (const auto& [ours, name] : names_) {
-    if (first.contains(name)) continue;
-    throw Error(fmt::format(
-        "{}: no feature {} for {}; give its name by --map {}=NAME (- where there is none). There are {}",
-        first.where(), quote(name), ours, ours, first.listed()));
+  for (const auto& [ours, feature] : features_) {
+    if (first.contains(feature.usual)) continue;
+    throw Error(fmt::format("{}: no feature {} for {}; give its name by --map {}=NAME{}. There are {}",
+                            first.where(), quote(feature.usual), ours, ours,
+                            feature.needed ? "" : " (- where there is none)", first.listed()));
   }
 }
 
 const std::string& FeatureNames::operator[](const std::string& ours) const {
-  const auto found = names_.find(ours);
-  if (found == names_.end()) throw Error(fmt::format("the feature {} was given up", ours));
-  return found->second;
+  const auto found = features_.find(ours);
+  if (found == features_.end()) throw Error(fmt::format("the feature {} was given up", ours));
+  return found->second.usual;
 }
 
 ExampleScenes::ExampleScenes(const std::filesystem::path& path, FeatureNames names, Convert convert)

@@ -21,7 +21,7 @@ namespace vkopple {
 /// A feature that a format reads.
 struct UsualFeature {
   std::string ours;   ///< for --map
-  std::string usual;  ///< what files call it
+  std::string usual;  ///< what files call it where the user does not say otherwise
   std::string holds;  ///< for `--help`
   bool needed = true;
 };
@@ -37,12 +37,13 @@ class FeatureNames {
   /// Throws Error, which lists the features that there are, where the example lacks one that was not given up.
   void check(const Example& first) const;
 
-  bool has(const std::string& ours) const { return names_.contains(ours); }
+  bool has(const std::string& ours) const { return features_.contains(ours); }
   /// Throws Error where it was given up.
   const std::string& operator[](const std::string& ours) const;
 
  private:
-  std::map<std::string, std::string> names_;  ///< by ours, without those given up
+  std::map<std::string, UsualFeature>
+      features_;  ///< by ours, under the names of the files, without those given up
 };
 
 /// Scenes of the examples of TFRecord files, one each.

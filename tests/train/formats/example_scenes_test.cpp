@@ -91,7 +91,7 @@ TEST_F(ExampleScenesOf, WhatIsGivenUpIsUnknown) {
   EXPECT_TRUE(scene.frames[0].ids.pixels.empty());
   EXPECT_TRUE(scene.frames[0].depth.pixels.empty());
   expect_error([&] { first(example, "gqn", "mask=-,camera=-"); }, {"--map camera=-"});
-  const SceneData film = first(movi(), "movi", "depth=-,depth_range=-,fov=-,mask=-,object_position=-");
+  const SceneData film = first(movi(), "movi", "depth=-,depth_range=-,fov=-,mask=-,object=-");
   EXPECT_NEAR(film.fov, 0.857556, 1e-6);
   EXPECT_FALSE(film.frames[0].objects);
   EXPECT_TRUE(film.frames[0].ids.pixels.empty());

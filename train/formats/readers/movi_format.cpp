@@ -21,9 +21,8 @@ const std::vector<UsualFeature> kFeatures{
     {"position", "camera/positions", "3 floats for each frame"},
     {"quaternion", "camera/quaternions", "4 floats for each frame: w, x, y, z"},
     {"fov", "camera/field_of_view", "a float: radians; without it 0.8576", false},
-    {"object_position", "instances/positions", "3 floats for each frame of each instance", false},
-    {"object_quaternion", "instances/quaternions", "4 floats for each frame of each instance: w, x, y, z",
-     false}};
+    {"object", "instances/positions", "3 floats for each frame of each instance", false},
+    {"object_turn", "instances/quaternions", "4 floats for each frame of each instance: w, x, y, z", false}};
 
 constexpr double kHalfSensor = 16, kFocal = 35;  // millimetres, of a camera whose angle of view isn't told
 
@@ -58,7 +57,7 @@ class FilmExample {
     read_cameras();
     if (names_.has("mask")) read_masks();
     if (names_.has("depth") && names_.has("depth_range")) read_depths();
-    if (names_.has("object_position")) read_objects();
+    if (names_.has("object")) read_objects();
     return std::move(scene_);
   }
 
@@ -112,14 +111,13 @@ class FilmExample {
   }
 
   void read_objects() {
-    const auto positions = example_.floats(names_["object_position"]);
+    const auto positions = example_.floats(names_["object"]);
     const std::size_t of_one = 3 * frames(), count = of_one == 0 ? 0 : positions.size() / of_one;
     if (positions.size() != count * of_one)
       throw Error(fmt::format("{} has {} values, not 3 for each of {} frames of each instance",
-                              example_.where(names_["object_position"]), positions.size(), frames()));
+                              example_.where(names_["object"]), positions.size(), frames()));
     std::span<const float> quaternions;
-    if (names_.has("object_quaternion"))
-      quaternions = example_.floats(names_["object_quaternion"], count * 4 * frames());
+    if (names_.has("object_turn")) quaternions = example_.floats(names_["object_turn"], count * 4 * frames());
     for (std::size_t i = 0; i < frames(); ++i) {
       auto& objects = scene_.frames[i].objects.emplace();
       for (std::size_t k = 0; k < count; ++k) {

@@ -22,16 +22,22 @@ uint64_t parse_seed(std::string_view text) {
   throw UsageError(fmt::format("rooms:{}: the seed must be a whole number from 0 to {}", text, UINT64_MAX));
 }
 
+std::unique_ptr<TripletSource> part_of(std::unique_ptr<TripletSource> source, BatchPart part) {
+  if (part.count == 1) return source;
+  return std::make_unique<PartSource>(std::move(source), part);
+}
+
 }  // namespace
 
 std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
                                              const RoomsConfig& rooms, int batch, uint64_t seed,
-                                             Reading reading) {
+                                             Reading reading, BatchPart part) {
   if (data.starts_with(kRooms)) {
-    return std::make_unique<RoomSource>(device, lens, rooms, batch,
-                                        parse_seed(std::string_view(data).substr(kRooms.size())));
+    return part_of(std::make_unique<RoomSource>(device, lens, rooms, batch,
+                                                parse_seed(std::string_view(data).substr(kRooms.size()))),
+                   part);
   }
-  auto shards = std::make_unique<ShardSource>(data, lens, batch, seed, reading);
+  auto shards = part_of(std::make_unique<ShardSource>(data, lens, batch, seed, reading, part.count), part);
   if (reading == Reading::kTraining) return std::make_unique<ReadAhead>(std::move(shards));
   return shards;
 }

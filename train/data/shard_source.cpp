@@ -150,8 +150,8 @@ void add_triplet(const SceneReader& scene, const std::array<uint16_t, 3>& frames
 }  // namespace
 
 ShardSource::ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed,
-                         Reading reading)
-    : reader_(path), lens_(lens), batch_(batch), seed_(seed), reading_(reading) {
+                         Reading reading, uint64_t parts)
+    : reader_(path), lens_(lens), batch_(batch), seed_(seed), reading_(reading), parts_(parts) {
   find_triplets();
   if (triplets_.empty()) {
     throw Error(fmt::format("{}: no scene of three frames or more (KEY.0.png, KEY.1.png, ...); check the path",
@@ -194,7 +194,7 @@ void ShardSource::shuffle(uint64_t epoch) {
 const ShardSource::Triplet& ShardSource::choose(uint64_t step, uint64_t element) {
   const uint64_t count = triplets_.size(), batch = static_cast<uint64_t>(batch_);
   if (reading_ == Reading::kEvaluation) return triplets_[(step * batch + element) % count];
-  const uint64_t steps = std::max<uint64_t>(count / batch, 1);  // of an epoch
+  const uint64_t steps = std::max<uint64_t>(count / (batch * parts_), 1) * parts_;  // of an epoch
   if (step / steps != order_epoch_) shuffle(step / steps);
   return triplets_[order_[(step % steps * batch + element) % count]];
 }

@@ -21,9 +21,11 @@ enum class Reading {
 /// trusted: Error names shard and member.
 class ShardSource : public TripletSource {
  public:
-  /// `path`: a shard or a folder of them. Looks through the headers of all. Throws Error where there is no
+  /// `path`: a shard or a folder of them. `parts`: batches of an epoch are a multiple of it, the parts of
+  /// larger ones that follow each other. Looks through the headers of all. Throws Error where there is no
   /// triplet.
-  ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed, Reading reading);
+  ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed, Reading reading,
+              uint64_t parts = 1);
 
   /// Of training, step counts on from epoch to epoch, each without what is left of its last incomplete batch; a
   /// data set smaller than a batch repeats itself. In evaluation the set starts again behind its last triplet.
@@ -48,6 +50,7 @@ class ShardSource : public TripletSource {
   int batch_;
   uint64_t seed_;
   Reading reading_;
+  uint64_t parts_;
   std::vector<SamplePlace> scenes_;
   std::vector<Triplet> triplets_;
   std::vector<uint32_t> order_;  ///< of the epoch read last

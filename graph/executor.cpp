@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <set>
 
 #include "graph/plan.h"
 #include "runtime/device.h"
@@ -248,6 +249,7 @@ Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
       graph_(&graph),
       loss_(options.loss),
       loss_scale_(options.loss_scale),
+      gradient_done_(std::move(options.gradient_done)),
       groups_(std::move(options.groups)) {
   if (!groups_) groups_ = std::make_shared<GroupStore>(device);
   kept_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "inputs and outputs", uint64_t{4} << 20);
@@ -343,8 +345,28 @@ void Executor::record_backward(bool profile) {
     recorder.expect_work(needs_[step.node].backward_flop);
     node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
     recorder.end_section();
+    if (!gradient_done_) continue;
+    for (const std::string& group : gradients_done_after(s))
+      recorder.host_step([this, group] { gradient_done_(group); });
   }
   backward_ = recorder.finish();
+}
+
+/// Groups of parameters that this step of backward is the last to add to.
+std::vector<std::string> Executor::gradients_done_after(size_t step) const {
+  const auto groups_of = [&](size_t s) {
+    std::set<std::string> groups;
+    const Node& node = graph_->nodes()[backward_plan_.steps[s].node];
+    for (size_t i = 0; i < node.inputs.size(); ++i) {
+      const ValueInfo& root = graph_->info(graph_->info(node.inputs[i]).root);
+      if (backward_plan_.steps[s].wants[i] != 0 && root.role == Role::kParameter) groups.insert(root.name);
+    }
+    return groups;
+  };
+  std::set<std::string> done = groups_of(step);
+  for (size_t later = step + 1; later < backward_plan_.steps.size() && !done.empty(); ++later)
+    for (const std::string& group : groups_of(later)) done.erase(group);
+  return {done.begin(), done.end()};
 }
 
 void Executor::record_again(Recorder& recorder, size_t n) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,7 +42,10 @@ struct ExecutorOptions {
   Value loss_scale;                             ///< row-major; its first element is the loss' gradient. None: 1
   bool profile = false;                         ///< timestamps around every command
   uint64_t recompute_from = uint64_t{1} << 18;  ///< bytes from which backward recomputes what is cheap to
-  bool in_place = true;                         ///< outputs take over the bytes of inputs where ops allow it
+  /// Told in every backward, for each trained group that has a gradient, when that is complete and others are
+  /// still to come: on the host, which may read it. Null: nobody is told.
+  std::function<void(const std::string& group)> gradient_done;
+  bool in_place = true;  ///< outputs take over the bytes of inputs where ops allow it
 };
 
 /// Runs a graph on a device: places every tensor, records each pass once, replays it as often as asked.
@@ -101,6 +105,7 @@ class Executor {
   void record_forward(bool profile);
   void record_backward(bool profile);
   void record_again(Recorder& recorder, size_t n);
+  std::vector<std::string> gradients_done_after(size_t step) const;
   void record_update(bool profile);
   NodeProfile profile_of(const Node& node) const;
   NodeProfile forward_profile(size_t n) const;
@@ -113,6 +118,7 @@ class Executor {
   Graph* graph_;
   Value loss_;
   Value loss_scale_;
+  std::function<void(const std::string& group)> gradient_done_;
   std::shared_ptr<GroupStore> groups_;
   std::unique_ptr<Arena> kept_;
   std::vector<std::unique_ptr<Buffer>> blocks_;

@@ -118,6 +118,7 @@ Value LayerFactory::batch_norm_with(Value x, const std::string& name, double eps
   options.training = options_.training;
   options.slope = static_cast<float>(slope);
   options.dropout = static_cast<float>(dropout);
+  options.peers = options_.statistics_peers;
   options.stream = dropout > 0 ? network_stream(options_.group, next_stream()) : 0;
   return vkopple::batch_norm(x, gamma, beta, mean, variance, dropout > 0 ? options_.random : Value{}, options);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "graph/graph.h"
+#include "graph/parallel/peers.h"
 #include "models/initialise.h"
 
 namespace vkopple {
@@ -29,6 +30,7 @@ struct NetworkOptions {
   bool training = false;                     ///< batch statistics and dropout, or running averages and none
   Value random;                              ///< u32 (2): seed and step; needed where dropout acts
   uint64_t max_tensor_bytes = ~uint64_t{0};  ///< larger tensors are avoided by splitting the samples
+  Peers* statistics_peers = nullptr;         ///< processes that share batch statistics; null: none do
 };
 
 /// The layers that the networks are made of; activations are NC4HW4, kept in line with docs/model.md §2.

@@ -7,6 +7,7 @@
 #include "graph/ops/blend.h"
 #include "graph/ops/centre_loss.h"
 #include "graph/ops/collapse_loss.h"
+#include "graph/ops/gather_batch.h"
 #include "graph/ops/image_loss.h"
 #include "graph/ops/imagination_condition.h"
 #include "graph/ops/imagination_input.h"
@@ -61,14 +62,16 @@ void Opple::declare_inputs() {
   camera_.index12 = g.input("index12", unsigned_ints({b}));
   camera_.index23 = g.input("index23", unsigned_ints({b}));
   camera_.resampling = g.input("resampling", row_major({kResamplingAngles, config_.bins, config_.bins}));
-  permutation_ = g.input("permutation", unsigned_ints({b}));
+  permutation_ =
+      g.input("permutation", unsigned_ints({several(options_.peers) ? b * options_.peers->count() : b}));
 }
 
 LayerFactory& Opple::factory(const std::string& group) {
   const auto found = factories_.find(group);
   if (found != factories_.end()) return found->second;
-  const NetworkOptions network =
+  NetworkOptions network =
       network_options(config_, group, options_.training, random_, options_.max_tensor_bytes);
+  if (options_.sync_batch_norm) network.statistics_peers = options_.peers;
   return factories_.emplace(group, LayerFactory(*graph_, network)).first->second;
 }
 
@@ -173,7 +176,10 @@ void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& mo
   losses_["centre"] = centre_loss(o[1].masks, points2, o[1].location);
   losses_["location"] = location_loss(aligned[0], o[2].location, matching.q);
   losses_["pose"] = pose_loss(o[2].log_pose, aligned[1], matching.q, divergence);
-  losses_["collapse"] = collapse_loss(o[0].location, o[2].location, matching.q, permutation_);
+  // It alone joins scenes, which may be of different processes.
+  const auto whole_batch = [&](Value part) { return gather_batch(part, options_.peers); };
+  losses_["collapse"] = collapse_loss(whole_batch(o[0].location), whole_batch(o[2].location),
+                                      whole_batch(matching.q), permutation_);
   const float reg = as_float(config_.reg);
   losses_["total"] = weighted_sum(
       {losses_["image"], losses_["centre"], losses_["location"], losses_["pose"], losses_["collapse"]},

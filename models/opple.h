@@ -7,6 +7,7 @@
 
 #include "graph/executor.h"
 #include "graph/graph.h"
+#include "graph/parallel/peers.h"
 #include "models/camera.h"
 #include "models/layers.h"
 #include "models/model_config.h"
@@ -20,7 +21,7 @@ struct Triplets {
   std::vector<float> images;          ///< 3 × (B, 3, H, W) in [0, 1]
   Slice drawn;                        ///< instead of `images`, on the device: of frames first_frame() to 2
   std::vector<CameraPose> poses;      ///< 3 × B
-  std::vector<uint32_t> permutation;  ///< (B), pairs scenes for the collapse term
+  std::vector<uint32_t> permutation;  ///< (B of all processes), pairs scenes for the collapse term
 };
 
 struct OppleOptions {
@@ -30,6 +31,8 @@ struct OppleOptions {
   Precision precision = Precision::kFloat32;
   bool keep_stages = false;                  ///< keeps every named stage for the host (parity)
   uint64_t max_tensor_bytes = ~uint64_t{0};  ///< the device's limit (Caps::max_tensor_bytes)
+  Peers* peers = nullptr;        ///< processes with parts of the same batch, `batch` each; null: this alone
+  bool sync_batch_norm = false;  ///< their batch norms share statistics
 };
 
 /// The whole model on triplets (docs/model.md §1–§6): networks, matching, motion, warp, imagination, losses.

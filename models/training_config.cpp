@@ -85,6 +85,7 @@ TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms)
   clip.number("imagination", c.clip.imagination, 1e-9, 1e9);
   clip.finish();
   object.choice("precision", c.precision, kPrecisionNames);
+  object.boolean("sync_batch_norm", c.sync_batch_norm);
   object.number("reverse_probability", c.reverse_probability, 0, 1);
   read_stages(object, c, rooms);
   object.finish();
@@ -103,6 +104,7 @@ nlohmann::ordered_json write_training_config(const TrainingConfig& c, const Room
   // Left out where it is the default: checkpoints of float32 stay as they were before there was a choice.
   if (c.precision != Precision::kFloat32)
     result["precision"] = kPrecisionNames[static_cast<std::size_t>(c.precision)];
+  if (c.sync_batch_norm) result["sync_batch_norm"] = true;
   result["reverse_probability"] = c.reverse_probability;
   result["stages"] = stages;
   return result;

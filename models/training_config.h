@@ -51,6 +51,7 @@ struct TrainingConfig {
   double epsilon = 1e-6;
   Clip clip;
   Precision precision = Precision::kFloat32;
+  bool sync_batch_norm = false;       ///< several processes: batch norms share statistics
   double reverse_probability = 0.5;   ///< of showing a triplet backwards in time
   std::vector<TrainingStage> stages;  ///< as the file lists them; see Config::stages()
 

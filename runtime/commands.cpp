@@ -23,20 +23,34 @@ Commands::~Commands() {
   if (pool_ != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool_, nullptr);
 }
 
+void Commands::submit(VkCommandBuffer buffer, VkFence fence) const {
+  VkSubmitInfo submit{};
+  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+  submit.commandBufferCount = 1;
+  submit.pCommandBuffers = &buffer;
+  check(vkQueueSubmit(device_->queue(), 1, &submit, fence), "vkQueueSubmit");
+}
+
+void Commands::wait() const {
+  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+}
+
 RunTimes Commands::run() const {
   RunTimes times;
   times.begin = std::chrono::steady_clock::now();
-  check(vkResetFences(device_->handle(), 1, &fence_), "vkResetFences");
+  auto step = host_steps_.begin();
   for (size_t i = 0; i < buffers_.size(); ++i) {
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &buffers_[i];
     const bool last = i + 1 == buffers_.size();
-    check(vkQueueSubmit(device_->queue(), 1, &submit, last ? fence_ : VK_NULL_HANDLE), "vkQueueSubmit");
+    const bool stops = step != host_steps_.end() && step->chunks == i + 1;
+    submit(buffers_[i], last || stops ? fence_ : VK_NULL_HANDLE);
+    if (!stops) continue;
+    wait();
+    step->run();
+    ++step;
   }
   times.submitted = std::chrono::steady_clock::now();
-  check(vkWaitForFences(device_->handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+  wait();
   times.end = std::chrono::steady_clock::now();
   return times;
 }

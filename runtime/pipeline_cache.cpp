@@ -1,11 +1,12 @@
 #include "runtime/pipeline_cache.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cstring>
 #include <fstream>
+
+#include "runtime/warn.h"
 
 namespace vkopple {
 namespace {
@@ -51,7 +52,7 @@ std::vector<std::byte> load_pipeline_cache(const std::filesystem::path& file, co
   std::ifstream in(file, std::ios::binary);
   if (!in) return {};
   const auto ignored = [&](std::string_view why) {
-    spdlog::warn("{}: {}; ignoring this pipeline cache", file.string(), why);
+    warn(fmt::format("{}: {}; ignoring this pipeline cache", file.string(), why));
     return std::vector<std::byte>{};
   };
   Header found;
@@ -72,7 +73,8 @@ std::vector<std::byte> load_pipeline_cache(const std::filesystem::path& file, co
 void save_pipeline_cache(const std::filesystem::path& file, const Caps& caps, std::span<const std::byte> data) {
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
-  const auto temporary = std::filesystem::path(file.string() + fmt::format(".tmp-{}", ::getpid()));
+  // Two threads of a process may end their devices at once.
+  const auto temporary = std::filesystem::path(file.string() + fmt::format(".tmp-{}", ::gettid()));
   const Header header = header_for(caps, data);
   {
     std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
@@ -82,7 +84,7 @@ void save_pipeline_cache(const std::filesystem::path& file, const Caps& caps, st
   }
   if (!error) std::filesystem::rename(temporary, file, error);
   if (error) {
-    spdlog::warn("{}: can't write the pipeline cache ({})", file.string(), error.message());
+    warn(fmt::format("{}: can't write the pipeline cache ({})", file.string(), error.message()));
     std::filesystem::remove(temporary, error);
   }
 }

@@ -298,6 +298,12 @@ void Recorder::copy(const Slice& from, const Slice& to) {
   recorded("copy");
 }
 
+void Recorder::host_step(std::function<void()> run) {
+  end_buffer();
+  commands_->host_steps_.push_back({commands_->buffers_.size(), std::move(run)});
+  begin_buffer();
+}
+
 void Recorder::begin_section() {
   if (chunk_flop_ > kChunkFlop || chunk_dispatches_ > kChunkDispatches) {
     end_buffer();

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -75,7 +76,8 @@ class Commands {
   Commands(const Commands&) = delete;
   Commands& operator=(const Commands&) = delete;
 
-  /// Submits every chunk in order and waits for the last one.
+  /// Submits every chunk in order and waits for the last one, and for those before a host step. What a host
+  /// step throws ends it.
   RunTimes run() const;
   /// Of the last run, in order of recording; empty unless recorded with timestamps.
   std::vector<CommandTime> command_times() const;
@@ -98,6 +100,14 @@ class Commands {
     uint32_t begin;  ///< its query
     uint32_t end;
   };
+  /// Work of the host between two chunks.
+  struct HostStep {
+    size_t chunks;  ///< that must be done before
+    std::function<void()> run;
+  };
+  void submit(VkCommandBuffer buffer, VkFence fence) const;
+  void wait() const;
+  std::vector<HostStep> host_steps_;
   int sections_ = 0;
   std::vector<Timed> timed_;
   uint32_t stamps_ = 0;  ///< queries that are written
@@ -145,6 +155,10 @@ class Recorder {
   /// Sets every 32-bit word.
   void fill(const Slice& slice, uint32_t word = 0);
   void copy(const Slice& from, const Slice& to);
+
+  /// Has the host do something in every run, when all that was recorded before is done and nothing of what
+  /// follows has begun. It may read and write the device's memory (runtime/transfer.h).
+  void host_step(std::function<void()> run);
 
   /// Brackets what one op records, for CommandTime::section.
   void begin_section();

@@ -6,6 +6,7 @@ packages=(
   g++ cmake ninja-build pkg-config
   libvulkan-dev mesa-vulkan-drivers vulkan-validationlayers glslang-tools spirv-tools
   libglm-dev libopenimageio-dev libarchive-dev libprotobuf-dev protobuf-compiler nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev libgtest-dev libgmock-dev
+  libopenmpi-dev openmpi-bin
 )
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 preset=release

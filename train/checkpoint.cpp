@@ -12,6 +12,7 @@
 #include "runtime/error.h"
 #include "train/config_difference.h"
 #include "train/quote.h"
+#include "train/run_folder.h"
 #include "train/safetensors.h"
 
 namespace vkopple {
@@ -171,7 +172,7 @@ TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& 
 RoomsConfig LoadedModel::rooms() const { return config.stages().at(position.stage).rooms; }
 
 LoadedModel load_model(const Device& device, const std::filesystem::path& path) {
-  const SafetensorsFile file(path);
+  const SafetensorsFile file(named_checkpoint(path));
   const CheckpointHeader header = header_of(file);
   ModelLayout layout(header.config.model, header.config.training.precision);
   std::set<std::string> allowed;

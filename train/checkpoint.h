@@ -48,7 +48,8 @@ struct LoadedModel {
   RoomsConfig rooms() const;
 };
 
-/// The weights alone, for evaluation and inference; the file need not hold the optimiser's state.
+/// The weights alone, for evaluation and inference, of a checkpoint or of the latest in a run's folder; the
+/// file need not hold the optimiser's state.
 LoadedModel load_model(const Device& device, const std::filesystem::path& path);
 
 }  // namespace vkopple

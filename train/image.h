@@ -6,6 +6,10 @@
 
 namespace vkopple {
 
+/// No picture that comes from outside is larger.
+inline constexpr int kLargestSide = 16384;
+inline constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
+
 /// One value per pixel, row by row from the top left.
 template <class T>
 struct Plane {

@@ -27,8 +27,6 @@ using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-constexpr int kMaxSide = 16384;
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 26;
 constexpr int kMaxChannels = 1024;
 constexpr std::size_t kMaxPngBytes = std::size_t{1} << 30;
 constexpr const char* kStrange = "not a picture of a known format, or a damaged one: ";
@@ -111,9 +109,9 @@ class Input {
     if (s.deep || s.depth > 1) fail("deep and volume images can't be used");
     if (s.width < 1 || s.height < 1 || s.nchannels < 1 || s.nchannels > kMaxChannels)
       fail("it has no usable pixels");
-    if (s.width > kMaxSide || s.height > kMaxSide || std::int64_t{s.width} * s.height > kMaxPixels) {
+    if (s.width > kLargestSide || s.height > kLargestSide || std::int64_t{s.width} * s.height > kMostPixels) {
       fail(size_text(s.height, s.width) + " pixels are too many; make it smaller, at most " +
-           std::to_string(kMaxSide) + " a side and " + std::to_string(kMaxPixels) + " in all");
+           std::to_string(kLargestSide) + " a side and " + std::to_string(kMostPixels) + " in all");
     }
   }
 
@@ -173,7 +171,7 @@ std::vector<std::byte> encode(const char* format, ImageSpec& spec, TypeDesc type
 }
 
 void check_size(int height, int width, std::size_t values, std::size_t channels) {
-  const bool sensible = height > 0 && width > 0 && height <= kMaxSide && width <= kMaxSide;
+  const bool sensible = height > 0 && width > 0 && height <= kLargestSide && width <= kLargestSide;
   if (sensible && values == channels * static_cast<std::size_t>(height) * static_cast<std::size_t>(width))
     return;
   throw Error("a picture of " + size_text(height, width) + " with " + std::to_string(values) +

@@ -27,6 +27,7 @@ std::string progress_line(const StepRecord& record, uint64_t total, double secon
   for (const auto& [name, value] : record.losses)
     if (name != "total") line += fmt::format("  {} {:.4g}", name, value);
   if (record.depth_r) line += fmt::format("  depth r {:.3f}", *record.depth_r);
+  if (record.shared) line += fmt::format("  efficiency {:.0f} %", 100 * record.shared->efficiency);
   const double rate = seconds_per_step > 0 ? record.batch / seconds_per_step : 0;
   const uint64_t left = total > record.step ? total - record.step : 0;
   return line + fmt::format("  {:.3g} triplets/s  {} left", rate,

@@ -30,4 +30,9 @@ std::filesystem::path RunFolder::numbered(uint64_t step) const {
   return path_ / fmt::format("step-{:06}.safetensors", step);
 }
 
+std::filesystem::path named_checkpoint(const std::filesystem::path& path) {
+  std::error_code failure;
+  return std::filesystem::is_directory(path, failure) ? RunFolder(path).latest() : path;
+}
+
 }  // namespace vkopple

@@ -25,4 +25,7 @@ class RunFolder {
   std::filesystem::path path_;
 };
 
+/// The checkpoint that a user names: a file, or the folder of a run, whose latest is meant.
+std::filesystem::path named_checkpoint(const std::filesystem::path& path);
+
 }  // namespace vkopple

@@ -29,7 +29,9 @@ SeenObject object(std::span<const float> location, std::span<const float> log_po
   const auto best = std::max_element(log_pose.begin(), log_pose.end());
   const auto bin = static_cast<double>(best - log_pose.begin());
   seen.yaw = 2 * std::numbers::pi * bin / static_cast<double>(log_pose.size());
-  seen.yaw_probability = std::exp(static_cast<double>(*best));
+  for (const float log_probability : log_pose)
+    seen.pose.push_back(std::exp(static_cast<double>(log_probability)));
+  seen.yaw_probability = *std::max_element(seen.pose.begin(), seen.pose.end());
   return seen;
 }
 
@@ -60,15 +62,18 @@ SeenImage see_image(Perception& model, const RgbImage& image) {
   seen.depth.pixels = percepts.depth;
   std::fill(seen.mask.pixels.begin(), seen.mask.pixels.end(), seen.background);
   if (!percepts.masks.empty()) add_objects(seen, percepts);
+  seen.soft_masks = percepts.masks;
   return seen;
 }
 
 SeenImage resize(const SeenImage& seen, int height, int width) {
   SeenImage resized{resize_nearest(seen.mask, height, width), resize(seen.depth, height, width), seen.objects,
-                    seen.background};
+                    seen.background, seen.soft_masks};
   count_shares(resized);
   return resized;
 }
+
+double background_share(const SeenImage& seen) { return share_of(seen.mask, seen.background); }
 
 nlohmann::ordered_json to_json(const SeenImage& seen) {
   auto objects = nlohmann::ordered_json::array();
@@ -84,7 +89,7 @@ nlohmann::ordered_json to_json(const SeenImage& seen) {
   }
   return {{"height", seen.mask.height},
           {"width", seen.mask.width},
-          {"background", {{"index", seen.background}, {"share", share_of(seen.mask, seen.background)}}},
+          {"background", {{"index", seen.background}, {"share", background_share(seen)}}},
           {"objects", objects}};
 }
 

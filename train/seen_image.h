@@ -17,6 +17,7 @@ struct SeenObject {
   double distance = 0;               ///< √(x² + y²), scene units
   double yaw = 0;                    ///< middle of the most likely bin, radians from 0 to 2π
   double yaw_probability = 0;        ///< of that bin
+  std::vector<double> pose;          ///< probability of every bin of yaw
   double share = 0;                  ///< of the picture's pixels, from 0 to 1
 };
 
@@ -27,6 +28,8 @@ struct SeenImage {
   std::vector<SeenObject>
       objects;                   ///< by slot, those without a pixel as well; none from a model of depth alone
   std::uint32_t background = 0;  ///< index: the model's number of slots
+  std::vector<float>
+      soft_masks;  ///< (slots + 1, H, W) of the model's size, the background's last; adding up to 1
 };
 
 /// `image` has the model's size, the model a batch of 1. Throws Error where what comes out is no
@@ -35,6 +38,9 @@ SeenImage see_image(Perception& model, const RgbImage& image);
 
 /// To the size of a picture that was made smaller for the model: indices by the nearest pixel, depth linearly.
 SeenImage resize(const SeenImage& seen, int height, int width);
+
+/// The background's share of the mask's pixels, from 0 to 1.
+double background_share(const SeenImage& seen);
 
 /// Sizes, the background's index and share, and every slot's object, keyed like the members above.
 nlohmann::ordered_json to_json(const SeenImage& seen);

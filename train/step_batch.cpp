@@ -47,8 +47,11 @@ Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permuta
 }
 
 Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, int batch,
-                           double reverse_probability, int first_frame) {
-  const auto reversed = reversed_triplets(seed, step, batch, reverse_probability);
+                           double reverse_probability, int first_frame, BatchPart part) {
+  const auto all = reversed_triplets(seed, step, batch, reverse_probability);
+  const auto length = static_cast<std::ptrdiff_t>(all.size() / part.count);
+  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(part.index) * length;
+  const std::vector<bool> reversed(begin, begin + length);
   return model_triplets(source.show(step, reversed, first_frame), scene_permutation(seed, step, batch));
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "models/opple.h"
+#include "train/data/batch_part.h"
 #include "train/data/triplets.h"
 
 namespace vkopple {
@@ -20,8 +21,9 @@ std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch)
 Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permutation);
 
 /// What step `step` of training shows in a batch of `batch` to a model that looks at the images from
-/// `first_frame` on.
+/// `first_frame` on; of several processes to the one whose `part` the source gives. The permutation is of the
+/// whole.
 Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, int batch,
-                           double reverse_probability, int first_frame = 0);
+                           double reverse_probability, int first_frame = 0, BatchPart part = {});
 
 }  // namespace vkopple

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "runtime/error.h"
 #include "train/data/open_source.h"
 #include "train/depth_probe.h"
+#include "train/parallel/agreement.h"
 #include "train/step_batch.h"
 #include "train/training_step.h"
 
@@ -80,7 +82,12 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
     position_.seed = options_.seed;
   }
   position_.data = options_.data;
-  if (!options_.profile.empty()) profiler_.emplace(device.caps(), options_.profile, options_.profiled_steps);
+  require_same(options_.peers,
+               fmt::format("{} {} {} {} {}", config_.to_json(), position_.step, position_.seed, position_.data,
+                           plan_.steps()),
+               "configuration, data, seed or checkpoint");
+  if (!options_.profile.empty() && leads())
+    profiler_.emplace(device.caps(), options_.profile, options_.profiled_steps);
 }
 
 Trainer::~Trainer() = default;
@@ -89,12 +96,15 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
   const TrainingStage& s = planned.stage;
   const Lens lens(config_.model);
   Stage stage{.planned = &planned, .source = nullptr, .training = nullptr, .probe = nullptr};
+  stage.training = std::make_unique<TrainingStep>(*device_, config_, s, store_.groups(),
+                                                  profiler_ && !profiler_->done(), options_.peers);
   stage.source =
-      open_triplets(*device_, options_.data, lens, s.rooms, s.batch,
-                    {.reading = Reading::kTraining, .seed = position_.seed, .threads = options_.data_threads});
-  stage.training =
-      std::make_unique<TrainingStep>(*device_, config_, s, store_.groups(), profiler_ && !profiler_->done());
-  if (options_.eval_every > 0)
+      open_triplets(*device_, options_.data, lens, s.rooms, static_cast<int>(stage.training->batch()),
+                    {.reading = Reading::kTraining,
+                     .seed = position_.seed,
+                     .threads = options_.data_threads,
+                     .part = part()});
+  if (options_.eval_every > 0 && leads())
     stage.probe = std::make_unique<DepthProbe>(store_, config_.model, s.rooms, std::min(s.batch, kProbeBatch),
                                                rooms_seed(options_.data) + kProbeSeedDistance);
   return stage;
@@ -107,14 +117,16 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   Triplets triplets;
   {
     const Trace::Span span(trace, "data");
-    triplets = training_triplets(*stage.source, position_.seed, step, s.batch,
-                                 config_.training.reverse_probability, stage.training->model().first_frame());
+    triplets =
+        training_triplets(*stage.source, position_.seed, step, s.batch, config_.training.reverse_probability,
+                          stage.training->model().first_frame(), part());
   }
   StepRecord record{.stage = s.name, .batch = s.batch, .data_seconds = seconds_since(start)};
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
   store_.count_step(s.hypotheses == Hypotheses::kBackground);
   record.seconds = seconds_since(start);
+  if (several(options_.peers)) record.shared = shared(stage.training->exchange_seconds(), record.seconds);
   position_.step = step + 1;
   position_.stage = plan_.stage_of(step);
   position_.stage_step = position_.step - stage.planned->begin;
@@ -123,7 +135,20 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   return record;
 }
 
+BatchPart Trainer::part() const {
+  if (!several(options_.peers)) return {};
+  return {static_cast<uint64_t>(options_.peers->rank()), static_cast<uint64_t>(options_.peers->count())};
+}
+
+/// `waited`: seconds of a step in this process.
+SharedStep Trainer::shared(double waited, double seconds) {
+  std::array<float, 2> means{static_cast<float>(waited), static_cast<float>(1 - waited / seconds)};
+  options_.peers->average(means);
+  return {options_.peers->count(), double{means[0]}, double{means[1]}};
+}
+
 void Trainer::save(bool numbered) {
+  if (!leads()) return;
   if (numbered) save_checkpoint(options_.folder.numbered(position_.step), store_, config_, position_);
   if (numbered || saved_step_ != position_.step)
     save_checkpoint(options_.folder.latest(), store_, config_, position_);
@@ -142,23 +167,27 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
   while (position_.step < plan_.steps() && !stopped) {
     const PlannedStage& planned = plan_.stages()[plan_.stage_of(position_.step)];
     Stage stage = open_stage(planned);
-    options_.folder.create();
-    if (!log) log.emplace(options_.folder.log(), position_.step);
-    progress.say(stage_text(planned));
-    if (device_->caps().cpu())
-      progress.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
+    if (leads()) {
+      options_.folder.create();
+      if (!log) log.emplace(options_.folder.log(), position_.step);
+      progress.say(stage_text(planned));
+      if (device_->caps().cpu())
+        progress.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
+    }
     while (position_.step < planned.end && !stopped) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
       {
         const Trace::Span span(trace, "step");
         const StepRecord record = train_step(stage, trace);
         const Trace::Span after(trace, "log and checkpoint");
-        log->add(record);
-        progress.show(record);
+        if (log) {
+          log->add(record);
+          progress.show(record);
+        }
         save_if_due();
       }
       if (trace != nullptr) profiler_->end_step();
-      stopped = stop();
+      stopped = any(options_.peers, stop());
     }
   }
   if (profiler_) profiler_->finish();

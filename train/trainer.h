@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "graph/parallel/peers.h"
 #include "models/config.h"
 #include "train/checkpoint.h"
+#include "train/data/batch_part.h"
 #include "train/data/triplets.h"
 #include "train/model_store.h"
 #include "train/profiler.h"
@@ -31,12 +33,16 @@ struct TrainerOptions {
   int profiled_steps = 1;              ///< of the trace, which leaves out the run's first step
   int data_threads = 2;                ///< that read files ahead
   double seconds_between_saves = 600;  ///< after which latest.safetensors is written anyway
+  Peers* peers = nullptr;              ///< processes that share the run; null: this one alone
 };
 
 /// Trains a model by docs/model.md §7 and the stages of its configuration, on a folder of checkpoints and log.
 ///
 /// Every step is a function of configuration, seed, data and the checkpoint before, so that a run that was
 /// stopped and resumed writes the same bytes as one that never was.
+///
+/// With peers all of them train the same weights, each on a part of every batch (train/training_step.h). The
+/// process of rank 0 alone writes files, tells of progress and measures depth.
 class Trainer {
  public:
   /// A new run; with `resume` one that goes on from the folder's latest checkpoint, which must be of this
@@ -56,6 +62,9 @@ class Trainer {
 
   Stage open_stage(const PlannedStage& planned);
   StepRecord train_step(Stage& stage, Trace* trace);
+  bool leads() const { return options_.peers == nullptr || options_.peers->rank() == 0; }
+  BatchPart part() const;
+  SharedStep shared(double waited, double seconds);
   void save(bool numbered);
   void save_if_due();
 

@@ -50,6 +50,11 @@ void TrainingLog::add(const StepRecord& record) {
                               {"seconds", record.seconds},
                               {"data_seconds", record.data_seconds}};
   if (record.depth_r) json["depth_r"] = *record.depth_r;
+  if (record.shared) {
+    json["processes"] = record.shared->processes;
+    json["exchange_seconds"] = record.shared->exchange_seconds;
+    json["efficiency"] = record.shared->efficiency;
+  }
   file_ << json.dump() << '\n' << std::flush;
   if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
 }

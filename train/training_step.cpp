@@ -27,16 +27,33 @@ double clip_of(const TrainingConfig& training, Network network) {
   return training.clip.object;
 }
 
+/// Each process drops other values of its part.
+uint32_t seed_of(uint32_t seed, const Peers* peers) {
+  return several(peers) ? seed + 0x9e3779b9U * static_cast<uint32_t>(peers->rank()) : seed;
+}
+
+int part_of(int batch, const Peers* peers) {
+  if (!several(peers)) return batch;
+  if (batch % peers->count() != 0)
+    throw Error(
+        fmt::format("a batch of {} has no {} equal parts; start another number of processes, or give --batch",
+                    batch, peers->count()));
+  return batch / peers->count();
+}
+
 }  // namespace
 
 TrainingStep::TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
-                           std::shared_ptr<GroupStore> groups, bool profile) {
+                           std::shared_ptr<GroupStore> groups, bool profile, Peers* peers)
+    : peers_(peers) {
   model_ = std::make_unique<Opple>(graph_, config.model,
-                                   OppleOptions{.batch = stage.batch,
+                                   OppleOptions{.batch = part_of(stage.batch, peers),
                                                 .training = true,
                                                 .background_only = stage.hypotheses == Hypotheses::kBackground,
                                                 .precision = config.training.precision,
-                                                .max_tensor_bytes = device.caps().max_tensor_bytes()});
+                                                .max_tensor_bytes = device.caps().max_tensor_bytes(),
+                                                .peers = peers,
+                                                .sync_batch_norm = config.training.sync_batch_norm});
   const auto present = model_->groups();
   std::vector<Network> networks;
   std::vector<std::string> trained;
@@ -56,37 +73,80 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
     options.clip = clip_of(config.training, networks[i]);
     adam(graph_, trained[i], options, loss_scale_);
   }
-  executor_ = std::make_unique<Executor>(device, graph_,
-                                         ExecutorOptions{.groups = std::move(groups),
-                                                         .loss = model_->loss(),
-                                                         .trained = trained,
-                                                         .loss_scale = loss_scale_,
-                                                         .profile = profile});
+  if (!config.training.sync_batch_norm)
+    for (const auto& [group, members] : graph_.states())
+      if (group.ends_with("/averages")) averages_.push_back(graph_.group(group));
+  ExecutorOptions options{.groups = std::move(groups),
+                          .loss = model_->loss(),
+                          .trained = trained,
+                          .loss_scale = loss_scale_,
+                          .profile = profile};
+  if (several(peers)) {
+    exchange_.emplace(*peers);
+    // Where backward itself exchanges statistics, gradients wait for its end.
+    if (config.training.sync_batch_norm)
+      trained_ = trained;
+    else
+      options.gradient_done = [this](const std::string& group) { begin_exchange(group); };
+  }
+  executor_ = std::make_unique<Executor>(device, graph_, std::move(options));
   // A store that has not been trained in mixed precision yet holds zeros.
   if (loss_scale_ && executor_->read(loss_scale_)[LossScale::kScale] == 0)
     executor_->write(loss_scale_, std::vector<float>{kLossScale.initial, 0, 0, 0});
   model_->feed_constants(*executor_);
 }
 
-std::map<std::string, double> TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step,
-                                                Trace* trace) {
+Losses TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step, Trace* trace) {
   {
     const Trace::Span span(trace, "feed");
-    model_->feed_random(*executor_, seed, step);
+    model_->feed_random(*executor_, seed_of(seed, peers_), step);
     model_->feed(*executor_, triplets);
   }
+  const double exchanged = several(peers_) ? peers_->seconds() : 0;
   executor_->forward();
   executor_->backward();
+  if (several(peers_)) {
+    const Trace::Span span(trace, "exchange");
+    finish_gradients();
+    average_over_peers(averages_);
+  }
   executor_->update();
   if (loss_scale_) require_finite_gradients();
-  std::map<std::string, double> losses;
+  Losses losses;
   {
     const Trace::Span span(trace, "read losses");
-    for (const auto& [name, value] : model_->losses())
-      losses[name] = static_cast<double>(executor_->read(value)[0]);
+    losses = read_losses();
   }
+  if (several(peers_)) exchange_seconds_ = peers_->seconds() - exchanged - exchange_->hidden_seconds();
   if (trace != nullptr)
     for (const PassProfile& pass : executor_->passes()) trace->add_pass(pass);
+  return losses;
+}
+
+void TrainingStep::begin_exchange(const std::string& group) {
+  exchange_->begin(group, executor_->read(graph_.gradient(group)));
+}
+
+void TrainingStep::finish_gradients() {
+  for (const std::string& group : trained_) begin_exchange(group);
+  for (const auto& [group, mean] : exchange_->finish()) executor_->write(graph_.gradient(group), mean);
+}
+
+void TrainingStep::average_over_peers(const std::vector<Value>& values) {
+  for (const Value value : values) {
+    std::vector<float> numbers = executor_->read(value);
+    peers_->average(numbers);
+    executor_->write(value, numbers);
+  }
+}
+
+Losses TrainingStep::read_losses() {
+  std::vector<float> values;
+  for (const auto& [name, value] : model_->losses()) values.push_back(executor_->read(value)[0]);
+  if (several(peers_)) peers_->average(values);
+  Losses losses;
+  auto next = values.begin();
+  for (const auto& [name, value] : model_->losses()) losses[name] = static_cast<double>(*next++);
   return losses;
 }
 

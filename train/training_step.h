@@ -2,10 +2,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "models/config.h"
 #include "models/opple.h"
+#include "train/parallel/gradient_exchange.h"
+#include "train/step_record.h"
 
 namespace vkopple {
 
@@ -16,27 +19,41 @@ class Trace;
 /// Adam for the networks that learn. In mixed precision the loss is scaled, and a step whose gradients overflow
 /// changes nothing but the scale (graph/ops/loss_scale.h). Weights, averages and optimiser state live in
 /// `groups`, which stages share.
+/// With peers each process takes its part of the stage's batch, and gradients, losses and running averages are
+/// the means over all: what one process would get of the whole batch, but for rounding, for dropout's masks,
+/// and for statistics of batch norms, which are each part's own unless the configuration says sync_batch_norm
+/// (docs/parallel.md).
 class TrainingStep {
  public:
   TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
-               std::shared_ptr<GroupStore> groups, bool profile = false);
+               std::shared_ptr<GroupStore> groups, bool profile = false, Peers* peers = nullptr);
 
   const Opple& model() const { return *model_; }
   Graph& graph() { return graph_; }
   Executor& executor() { return *executor_; }
+  /// Of the last run: seconds that this process waited in exchanges with its peers.
+  double exchange_seconds() const { return exchange_seconds_; }
   int64_t batch() const { return model_->options().batch; }
 
-  /// Forward, backward, update on one batch; `step` counts from 0 and numbers the dropout masks. Losses by
-  /// name. A step that was made for profiling tells `trace` what it did.
-  std::map<std::string, double> run(const Triplets& triplets, uint32_t seed, uint32_t step,
-                                    Trace* trace = nullptr);
+  /// Forward, backward, update on one batch (of this process); `step` counts from 0 and numbers the dropout
+  /// masks. Losses by name. A step that was made for profiling tells `trace` what it did.
+  Losses run(const Triplets& triplets, uint32_t seed, uint32_t step, Trace* trace = nullptr);
 
  private:
+  void begin_exchange(const std::string& group);
+  void finish_gradients();
+  void average_over_peers(const std::vector<Value>& values);
+  Losses read_losses();
   void require_finite_gradients() const;
 
+  Peers* peers_;
   Graph graph_;
   std::unique_ptr<Opple> model_;
-  Value loss_scale_;  ///< the state of LossScale, in mixed precision
+  std::vector<Value> averages_;  ///< running ones that processes have of their own batches
+  Value loss_scale_;             ///< the state of LossScale, in mixed precision
+  std::optional<GradientExchange> exchange_;
+  std::vector<std::string> trained_;  ///< groups whose gradients are exchanged after backward, not during it
+  double exchange_seconds_ = 0;
   std::unique_ptr<Executor> executor_;
 };
 

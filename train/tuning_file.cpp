@@ -1,11 +1,11 @@
 #include "train/tuning_file.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "graph/conv/conv_tuning.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/warn.h"
 #include "train/json_io.h"
 
 namespace vkopple {
@@ -45,7 +45,7 @@ TunedChoices read(const std::filesystem::path& file, const Caps& caps) {
       if (!is_tuned_choice(key, tile, caps)) throw Error(choices[key].where() + " is no tile of this device");
       known.emplace(key, std::move(tile));
     } catch (const Error& error) {
-      spdlog::warn("{}; this choice is ignored", error.what());
+      warn(fmt::format("{}; this choice is ignored", error.what()));
     }
   }
   return known;
@@ -66,7 +66,7 @@ std::shared_ptr<const TunedChoices> read_tuned_choices(const std::filesystem::pa
     auto choices = std::make_shared<const TunedChoices>(read(file, caps));
     return choices->empty() ? nullptr : choices;
   } catch (const Error& why) {
-    spdlog::warn("{}; its tuned choices are ignored, `vkopple tune` makes new ones", why.what());
+    warn(fmt::format("{}; its tuned choices are ignored, `vkopple tune` makes new ones", why.what()));
     return nullptr;
   }
 }

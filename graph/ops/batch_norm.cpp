@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "graph/parallel/host_exchange.h"
+#include "graph/parallel/shared_statistics.h"
+
 namespace vkopple {
 namespace {
 
@@ -80,7 +83,14 @@ void BatchNorm::record_forward(Recorder& recorder, const Forward& io) const {
   const Slice partials = io.scratch.sub(aligned(table_bytes), norm.partial_bytes());
   const Slice table = io.saved[0] ? io.saved[0].slice : io.scratch.sub(0, table_bytes);
   if (options_.training) norm.record_statistics(recorder, io.x[kX].slice, partials);
-  const FinishPush push{norm.strips(), options_.eps, options_.momentum};
+  NormStrips strips = norm.strips();
+  if (shares()) {
+    record_change(recorder, partials, [peers = options_.peers, strips](std::span<float> values) {
+      share_statistics(*peers, strips, values);
+    });
+    strips = shared_strips(strips, options_.peers->count());
+  }
+  const FinishPush push{strips, options_.eps, options_.momentum};
   recorder.dispatch("batch_norm_finish", {norm.finish_workgroup(), options_.training ? 1U : 0U},
                     {options_.training ? partials : Slice{}, io.x[kGamma].slice, io.x[kBeta].slice,
                      io.x[kMean].slice, io.x[kVar].slice, table},
@@ -101,6 +111,10 @@ void BatchNorm::record_backward(Recorder& recorder, const Backward& io) const {
   const Slice random = drops() ? io.x[kRandom].slice : Slice{};
   const Slice table = io.saved[0].slice;
   norm.record_reduce(recorder, random, io.x[kX].slice, io.dy[0].slice, table, partials);
+  // Sums over the values of all processes, as the mean of a process's: its number of values goes with it.
+  if (shares())
+    record_change(recorder, partials,
+                  [peers = options_.peers](std::span<float> values) { peers->average(values); });
   recorder.dispatch("batch_norm_gradients", {norm.finish_workgroup(), options_.training ? 1U : 0U},
                     {partials, table, coefficients, io.dx[kGamma].slice, io.dx[kBeta].slice},
                     GradientsPush{norm.strips(), gradient_flags(io)}, {norm.strips().blocks, 1, 1});

@@ -2,17 +2,19 @@
 
 #include "graph/graph.h"
 #include "graph/norm/normalise.h"
+#include "graph/parallel/peers.h"
 
 namespace vkopple {
 
 struct BatchNormOptions {
   float eps = 1e-5F;
-  float momentum = 0.1F;  ///< of the running averages
-  int64_t groups = 1;     ///< runs of samples, each with statistics of its own
-  bool training = true;   ///< false: running statistics, and no dropout
-  float slope = 1;        ///< of a LeakyReLU before the norm, in (0, 1]; 1: none
-  float dropout = 0;      ///< rate of dropout after the norm, as the op dropout
-  uint32_t stream = 0;    ///< of dropout
+  float momentum = 0.1F;   ///< of the running averages
+  int64_t groups = 1;      ///< runs of samples, each with statistics of its own
+  bool training = true;    ///< false: running statistics, and no dropout
+  float slope = 1;         ///< of a LeakyReLU before the norm, in (0, 1]; 1: none
+  float dropout = 0;       ///< rate of dropout after the norm, as the op dropout
+  uint32_t stream = 0;     ///< of dropout
+  Peers* peers = nullptr;  ///< whose batches share statistics in training; null: every process has its own
 };
 
 /// y = dropout((leaky(x) − mean) / √(variance + eps) · gamma + beta), per channel.
@@ -39,6 +41,7 @@ class BatchNorm : public Op {
 
  private:
   bool drops() const { return options_.training && options_.dropout > 0; }
+  bool shares() const { return options_.training && several(options_.peers); }
   Normalise normalise(const Shape& x, const Caps& caps) const;
 
   BatchNormOptions options_;

@@ -69,6 +69,15 @@ TEST(Config, PrecisionIsWrittenWhereItIsNotTheDefault) {
   EXPECT_NE(refusal(R"({"training": {"precision": "half"}})").find("training.precision"), std::string::npos);
 }
 
+TEST(Config, SharedStatisticsAreWrittenWhereTheyAreWanted) {
+  Config c;
+  EXPECT_EQ(c.to_json().find("sync_batch_norm"), std::string::npos);
+  c.training.sync_batch_norm = true;
+  EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
+  EXPECT_NE(refusal(R"({"training": {"sync_batch_norm": 1}})").find("training.sync_batch_norm"),
+            std::string::npos);
+}
+
 TEST(Config, SmallLearnsDepthFirst) {
   const Config c = Config::load("small");
   ASSERT_EQ(c.stages().size(), 2U);

@@ -1,6 +1,7 @@
 #include "runtime/pipeline_cache.h"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/null_sink.h>
 #include <spdlog/spdlog.h>
 
 #include <fstream>
@@ -13,13 +14,13 @@ namespace {
 class PipelineCacheTest : public testing::Test {
  protected:
   void SetUp() override {
-    spdlog::set_level(spdlog::level::err);  // the warnings are expected, hundreds of them
+    spdlog::null_logger_mt("vkopple");  // the warnings are expected, hundreds of them
     caps_.uuid.fill(7);
     caps_.driver_version = 3;
     file_ = folder_.path() / "cache.bin";
     save_pipeline_cache(file_, caps_, data_);
   }
-  void TearDown() override { spdlog::set_level(spdlog::level::info); }
+  void TearDown() override { spdlog::drop("vkopple"); }
 
   test::TempFolder folder_;
   std::filesystem::path file_;

@@ -11,7 +11,7 @@
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
 #include "tools/stage_rooms.h"
-#include "tools/trained_networks.h"
+#include "train/trained_networks.h"
 #include "train/checkpoint.h"
 #include "train/count_progress.h"
 #include "train/data/open_source.h"
@@ -82,7 +82,7 @@ void run(const Options& o) {
 void add_eval(CLI::App& app) {
   CLI::App* command = app.add_subcommand("eval", "Score a model on images whose objects and depth are known");
   const auto o = std::make_shared<Options>();
-  command->add_option("model", o->model, "A checkpoint")->required();
+  command->add_option("model", o->model, "A checkpoint, or the folder of a run")->required();
   command
       ->add_option(
           "--data", o->data,

@@ -13,7 +13,7 @@
 #include "tools/device_option.h"
 #include "tools/output_folder.h"
 #include "tools/precision_option.h"
-#include "tools/trained_networks.h"
+#include "train/trained_networks.h"
 #include "train/atomic_file.h"
 #include "train/checkpoint.h"
 #include "train/count_progress.h"
@@ -160,7 +160,7 @@ void run(const Options& o) {
 void add_infer(CLI::App& app) {
   CLI::App* command = app.add_subcommand("infer", "Cut images into objects, with depth");
   const auto o = std::make_shared<Options>();
-  command->add_option("model", o->model, "A checkpoint")->required();
+  command->add_option("model", o->model, "A checkpoint, or the folder of a run")->required();
   command->add_option("image", o->images, "Images of any size and format that OpenImageIO reads")->required();
   command
       ->add_option("--out", o->out,

@@ -12,7 +12,7 @@
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/output_folder.h"
-#include "tools/trained_networks.h"
+#include "train/trained_networks.h"
 #include "train/checkpoint.h"
 #include "train/frame_poses.h"
 #include "train/image_io.h"
@@ -126,7 +126,7 @@ void run(const Options& o) {
 void add_predict(CLI::App& app) {
   CLI::App* command = app.add_subcommand("predict", "Predict the third frame from two frames and the camera");
   const auto o = std::make_shared<Options>();
-  command->add_option("model", o->model, "A checkpoint")->required();
+  command->add_option("model", o->model, "A checkpoint, or the folder of a run")->required();
   command->add_option("frame1", o->first, "The first image")->required();
   command->add_option("frame2", o->second, "The second image")->required();
   command

@@ -15,6 +15,8 @@
 #include "tools/set_option.h"
 #include "train/checkpoint.h"
 #include "train/interrupt.h"
+#include "train/parallel/join.h"
+#include "train/parallel/own_device.h"
 #include "train/progress.h"
 #include "train/run_folder.h"
 #include "train/trainer.h"
@@ -40,12 +42,14 @@ struct Options {
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   int data_threads = TrainerOptions{RunFolder("")}.data_threads;
   bool resume = false;
+  bool sync_batch_norm = false;
   WinogradUse winograd = WinogradUse::kWhereFaster;
 };
 
 /// The command line goes before the configuration.
 void set_choices(Config& config, const Options& o) {
   if (o.precision) config.training.precision = *o.precision;
+  if (o.sync_batch_norm) config.training.sync_batch_norm = true;
   if (!o.batch) return;
   config.training.batch = *o.batch;
   for (TrainingStage& stage : config.training.stages) stage.batch = *o.batch;
@@ -89,7 +93,8 @@ Request resumed_run(const Options& o, TrainerOptions trainer) {
   return request;
 }
 
-void run(const Options& o) {
+/// `peers` may be null.
+void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
   TrainerOptions trainer_options{.folder = RunFolder(o.out)};
   trainer_options.steps = o.steps;
   trainer_options.checkpoint_every = o.checkpoint_every;
@@ -97,19 +102,20 @@ void run(const Options& o) {
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   trainer_options.data_threads = o.data_threads;
+  trainer_options.peers = peers;
   Request request = o.resume ? resumed_run(o, trainer_options) : new_run(o, trainer_options);
   require_kernels_suit(o.kernels, request.config.training.precision);
   prefer_wide_vectors();
-  const Device device({.selector = o.device,
+  const Device device({.selector = peers == nullptr ? o.device : own_device(o.device, peers->rank_on_machine()),
                        .long_work = true,
                        .winograd = o.winograd,
                        .kernels = o.kernels,
                        .tuned = load_tuned_choices});
-  const Interrupt interrupt;
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
   Progress progress(trainer.plan().steps());
   const uint64_t begin = trainer.position().step;
   const bool complete = trainer.run(progress, [&] { return interrupt.requested(); });
+  if (peers != nullptr && peers->rank() != 0) return;
   const uint64_t step = trainer.position().step;
   const std::string latest = RunFolder(o.out).latest().string();
   if (!complete)
@@ -120,6 +126,20 @@ void run(const Options& o) {
     progress.say(fmt::format("{} has its {} steps already; give more with --steps", o.out, step));
   else
     progress.say(fmt::format("done after step {}, saved in {}", step, latest));
+}
+
+/// Where one of several processes fails, the others would wait for it for ever.
+void run(const Options& o) {
+  const Interrupt interrupt;
+  const std::unique_ptr<JoinedPeers> peers = join_peers([&] { return interrupt.requested(); });
+  if (!peers) return train(o, interrupt, nullptr);
+  try {
+    train(o, interrupt, peers.get());
+  } catch (const UsageError& error) {
+    peers->abandon(error.what(), 2);
+  } catch (const std::exception& error) {
+    peers->abandon(error.what(), 1);
+  }
 }
 
 }  // namespace
@@ -172,13 +192,16 @@ void add_train(CLI::App& app) {
       "--deterministic", [] {},
       "Take every sum in a fixed order, so that two runs on a device give the same bytes; the default, "
       "and so far the only way there is");
+  command->add_flag("--sync-batch-norm", o->sync_batch_norm,
+                    "Under mpirun: batch norms take their statistics over the batches of all processes");
   add_winograd_option(*command, o->winograd);
   add_precision_option(*command, o->precision, "what the configuration says, float32 where it says nothing");
   add_device_option(*command, o->device);
   add_kernels_option(*command, o->kernels);
   command->footer(
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
-      "          vkopple train --out run --steps 10000 --resume");
+      "          vkopple train --out run --steps 10000 --resume\n"
+      "          mpirun -n 4 vkopple train full --data rooms:1 --out run");
   command->callback([o] { run(*o); });
 }
 

@@ -31,17 +31,25 @@ std::unique_ptr<SampleStore> open_store(const std::filesystem::path& path, const
   return load_scenes(path, lens, limits);
 }
 
+std::unique_ptr<TripletSource> part_of(std::unique_ptr<TripletSource> source, BatchPart part) {
+  if (part.count == 1) return source;
+  return std::make_unique<PartSource>(std::move(source), part);
+}
+
 }  // namespace
 
 std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::string& data, const Lens& lens,
                                              const RoomsConfig& rooms, int batch,
                                              const SourceOptions& options) {
-  if (data.starts_with(kRooms))
-    return std::make_unique<RoomSource>(device, lens, rooms, batch,
-                                        parse_seed(std::string_view(data).substr(kRooms.size())));
+  if (data.starts_with(kRooms)) {
+    return part_of(std::make_unique<RoomSource>(device, lens, rooms, batch,
+                                                parse_seed(std::string_view(data).substr(kRooms.size()))),
+                   options.part);
+  }
   const LoadLimits limits{.scenes = options.reading == Reading::kEvaluation ? options.scenes : UINT64_MAX};
-  auto source = std::make_unique<ShardSource>(open_store(data, lens, limits), data, lens, batch, options.seed,
-                                              options.reading);
+  auto source = part_of(std::make_unique<ShardSource>(open_store(data, lens, limits), data, lens, batch,
+                                                      options.seed, options.reading, options.part.count),
+                        options.part);
   if (options.reading == Reading::kTraining)
     return std::make_unique<ReadAhead>(std::move(source), options.threads);
   return source;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "train/data/batch_part.h"
 #include "train/data/shard_source.h"
 #include "train/data/triplets.h"
 #include "train/rooms/renderer.h"
@@ -12,12 +13,13 @@ namespace vkopple {
 
 class Device;
 
-/// Of data in files.
+/// What of the data is read, all but `part` for data in files.
 struct SourceOptions {
   Reading reading = Reading::kTraining;
   uint64_t seed = 0;             ///< of the order of training
   int threads = 2;               ///< that read ahead in training
   uint64_t scenes = UINT64_MAX;  ///< how many evaluation needs at most
+  BatchPart part = {};           ///< of whole batches, where `batch` triplets are one of several processes'
 };
 
 /// What `--data` names: "rooms:SEED" draws new rooms at every step, anything else is a shard or a folder of

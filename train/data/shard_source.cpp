@@ -147,8 +147,8 @@ void keep_known(const Known& known, TripletBatch& batch) {
 }  // namespace
 
 ShardSource::ShardSource(std::unique_ptr<SampleStore> store, const std::filesystem::path& path,
-                         const Lens& lens, int batch, uint64_t seed, Reading reading)
-    : store_(std::move(store)), lens_(lens), batch_(batch), seed_(seed), reading_(reading) {
+                         const Lens& lens, int batch, uint64_t seed, Reading reading, uint64_t parts)
+    : store_(std::move(store)), lens_(lens), batch_(batch), seed_(seed), reading_(reading), parts_(parts) {
   find_triplets();
   if (!triplets_.empty()) return;
   throw Error(fmt::format("{}: no scene of {} (KEY.0.png, KEY.1.png, ...); check the path", path.string(),
@@ -197,7 +197,7 @@ std::vector<ShardSource::Triplet> ShardSource::choose(uint64_t step) {
     for (uint64_t i = 0; i < batch; ++i) chosen.push_back(triplets_[(step * batch + i) % count]);
     return chosen;
   }
-  const uint64_t steps = std::max<uint64_t>(count / batch, 1);  // of an epoch
+  const uint64_t steps = std::max<uint64_t>(count / (batch * parts_), 1) * parts_;  // of an epoch
   const auto epoch_order = order(step / steps);
   for (uint64_t i = 0; i < batch; ++i)
     chosen.push_back(triplets_[(*epoch_order)[(step % steps * batch + i) % count]]);

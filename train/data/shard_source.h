@@ -24,12 +24,14 @@ enum class Reading {
 /// trusted: Error names shard and member. Several threads may read at once.
 class ShardSource : public TripletSource {
  public:
-  /// Throws Error, which names `path`, where there is no triplet.
+  /// `parts`: batches of an epoch are a multiple of it, the parts of larger ones that follow each other. Throws
+  /// Error, which names `path`, where there is no triplet.
   ShardSource(std::unique_ptr<SampleStore> store, const std::filesystem::path& path, const Lens& lens,
-              int batch, uint64_t seed, Reading reading);
+              int batch, uint64_t seed, Reading reading, uint64_t parts = 1);
   /// `path`: a shard or a folder of them.
-  ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed, Reading reading)
-      : ShardSource(std::make_unique<ShardStore>(path), path, lens, batch, seed, reading) {}
+  ShardSource(const std::filesystem::path& path, const Lens& lens, int batch, uint64_t seed, Reading reading,
+              uint64_t parts = 1)
+      : ShardSource(std::make_unique<ShardStore>(path), path, lens, batch, seed, reading, parts) {}
 
   /// Of training, step counts on from epoch to epoch, each without what is left of its last incomplete batch; a
   /// data set smaller than a batch repeats itself. In evaluation the set starts again behind its last triplet;
@@ -59,6 +61,7 @@ class ShardSource : public TripletSource {
   int batch_;
   uint64_t seed_;
   Reading reading_;
+  uint64_t parts_;
   std::vector<Triplet> triplets_;
   std::mutex orders_mutex_;
   std::map<uint64_t, std::shared_ptr<const Order>> orders_;  ///< by epoch: the last few that were asked for

@@ -1,8 +1,10 @@
-#include "tools/trained_networks.h"
+#include "train/trained_networks.h"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+
+#include "runtime/warn.h"
 
 namespace vkopple {
 
@@ -19,8 +21,8 @@ void warn_if_untrained(const LoadedModel& model, const std::vector<Network>& nee
     names += (names.empty() ? "" : ", ") + std::string(kNetworkNames[static_cast<size_t>(network)]);
   }
   if (!names.empty())
-    spdlog::warn("networks that have not learned yet at step {}, so that what they say is noise: {}",
-                 model.position.step, names);
+    warn(fmt::format("networks that have not learned yet at step {}, so that what they say is noise: {}",
+                     model.position.step, names));
 }
 
 }  // namespace vkopple

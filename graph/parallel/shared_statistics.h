@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+#include "graph/norm/normalise.h"
+#include "graph/parallel/peers.h"
+
+namespace vkopple {
+
+// Batch normalisation over the batches of several processes: between the two stages of its reductions the host
+// puts what all have found in place of what one has (shaders/norm says what the partials are).
+
+/// How the second stage of forward is to count strips whose content shared_statistics() has made.
+NormStrips shared_strips(const NormStrips& strips, int processes);
+
+/// `partials` of norm_statistics, (groups, blocks, strips) × {mean, squares about it, what the mean rounds off}
+/// of 4 channels: puts strips in their place which, counted by shared_strips(), have mean and squares of all
+/// processes' values.
+void share_statistics(Peers& peers, const NormStrips& strips, std::span<float> partials);
+
+}  // namespace vkopple

@@ -1,0 +1,43 @@
+#include "train/parallel/agreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "runtime/error.h"
+
+namespace vkopple {
+namespace {
+
+/// FNV-1a, 64 bits, in quarters that floats hold exactly.
+std::array<float, 4> fingerprint(std::string_view text) {
+  uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  std::array<float, 4> quarters{};
+  for (size_t i = 0; i < quarters.size(); ++i) quarters[i] = static_cast<float>(hash >> (16 * i) & 0xFFFF);
+  return quarters;
+}
+
+}  // namespace
+
+void require_same(Peers* peers, std::string_view text, std::string_view what) {
+  if (!several(peers)) return;
+  const auto own = fingerprint(text);
+  const std::vector<float> all = peers->gather(own);
+  for (size_t i = 0; i < all.size(); ++i)
+    if (all[i] != own[i % own.size()])
+      throw Error(
+          fmt::format("processes {} and {} differ in {}; start all with the same command, files and program",
+                      peers->rank(), i / own.size(), what));
+}
+
+bool any(Peers* peers, bool here) {
+  if (!several(peers)) return here;
+  const float own = here ? 1 : 0;
+  const std::vector<float> all = peers->gather({&own, 1});
+  return std::any_of(all.begin(), all.end(), [](float v) { return v != 0; });
+}
+
+}  // namespace vkopple

@@ -176,7 +176,7 @@ void export_weights(const std::filesystem::path& path, const ModelWeights& weigh
     metadata[kFormatKey] = kBgrFormat;
     swap_red_and_blue(tensors);
   }
-  if (path.extension() != ".pt" && path.extension() != ".pth") {
+  if (!has_torch_ending(path)) {
     write_safetensors(path, metadata, tensors);
     return;
   }

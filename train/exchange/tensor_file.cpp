@@ -23,8 +23,7 @@ class SafetensorsSource : public TensorFile {
 }  // namespace
 
 std::unique_ptr<TensorFile> open_tensor_file(const std::filesystem::path& path) {
-  if (is_zip(path) || path.extension() == ".pt" || path.extension() == ".pth")
-    return std::make_unique<TorchFile>(path);
+  if (is_zip(path) || has_torch_ending(path)) return std::make_unique<TorchFile>(path);
   return std::make_unique<SafetensorsSource>(path);
 }
 

@@ -68,6 +68,10 @@ void gather(const std::byte* from, const StoredShape& shape, const std::vector<s
 
 }  // namespace
 
+bool has_torch_ending(const std::filesystem::path& path) {
+  return path.extension() == ".pt" || path.extension() == ".pth";
+}
+
 TorchFile::TorchFile(std::filesystem::path path) : path_(std::move(path)) {
   if (!is_zip(path_)) {
     throw Error(

@@ -53,6 +53,9 @@ class TorchFile : public TensorFile {
   std::map<std::string, Entry> entries_;
 };
 
+/// Whether a path ends as the files of PyTorch do: .pt or .pth.
+bool has_torch_ending(const std::filesystem::path& path);
+
 /// Writes such a file through AtomicFile; torch.load(path, weights_only=True) reads it as an OrderedDict of
 /// tensors on the CPU and knows nothing of `metadata`. The same content gives the same bytes. Throws Error for
 /// element types that PyTorch's storages don't have.

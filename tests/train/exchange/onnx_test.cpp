@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -117,6 +118,29 @@ TEST(OnnxExport, HoldsTheWeights) {
     EXPECT_TRUE(std::equal(tensor.shape.begin(), tensor.shape.end(), constants.at(name)->dims().begin(),
                            constants.at(name)->dims().end()))
         << name;
+  }
+}
+
+/// i o f g where the weights have i f g o.
+TEST(OnnxExport, OrdersTheGates) {
+  const ModelWeights weights = test::drawn_weights();
+  const onnx::ModelProto model = exported(weights);
+  const auto& nodes = model.graph().node();
+  const auto lstm =
+      std::find_if(nodes.begin(), nodes.end(), [](const auto& n) { return n.op_type() == "LSTM"; });
+  ASSERT_NE(lstm, nodes.end());
+  const std::array<std::pair<int, const char*>, 2> inputs{{{1, "rnn.weight_ih_l0"}, {2, "rnn.weight_hh_l0"}}};
+  for (const auto& [input, name] : inputs) {
+    const auto& bytes = weights.tensors.at(std::string("segmentation_model.seg_net.seg_net.") + name).bytes;
+    const size_t gate = bytes.size() / 4;
+    const auto& constants = model.graph().initializer();
+    const auto found = std::find_if(constants.begin(), constants.end(),
+                                    [&, i = input](const auto& c) { return c.name() == lstm->input(i); });
+    ASSERT_NE(found, constants.end());
+    const std::array<size_t, 4> order{0, 3, 1, 2};
+    for (size_t g = 0; g < order.size(); ++g)
+      EXPECT_EQ(std::memcmp(found->raw_data().data() + g * gate, bytes.data() + order[g] * gate, gate), 0)
+          << name << g;
   }
 }
 

@@ -214,6 +214,14 @@ TEST(Pickle, Limits) {
   EXPECT_NO_THROW(Pickle(bytes_of(nested(64)), "p"));
   expect_refused(nested(65), {"p.pickle: it is nested deeper than 64 levels"});
   expect_refused(nested(100'000), {"nested deeper than 64 levels"});
+  // What is shared is as deep as at its deepest place.
+  const auto wrapped = [&](size_t depth) {
+    const std::string shared = nested(40);
+    return "(" + shared.substr(0, shared.size() - 1) + "p0\n" + std::string(depth, ']') + "g0\n" +
+           std::string(depth, 'a') + "t.";
+  };
+  EXPECT_NO_THROW(Pickle(bytes_of(wrapped(23)), "p"));
+  expect_refused(wrapped(24), {"nested deeper than 64 levels"});
   expect_refused("]p0\ng0\na.", {"contains itself"});
   expect_refused("callowed\nf\n)Rp0\ng0\nb.", {"contains itself"});
   expect_refused("(I1\nI2\nI3\nt.", {"byte 7", "more values than are allowed"}, {.max_values = 2});

@@ -29,7 +29,8 @@ Perception::Perception(const Device& device, const ModelConfig& config, std::sha
     objects_ = object_state(config, out.raw, out.mask_logits);
     graph_.keep("masks", objects_.masks);
     graph_.keep("location", objects_.location);
-    graph_.keep("log_pose", objects_.log_pose);
+    if (objects_.log_pose) graph_.keep("log_pose", objects_.log_pose);
+    if (objects_.rotation) graph_.keep("rotation", objects_.rotation);
   }
   executor_ = std::make_unique<Executor>(
       device, graph_, ExecutorOptions{.groups = std::move(groups), .profile = options.profile});
@@ -43,7 +44,8 @@ Percepts Perception::see(std::span<const float> images) {
   if (options_.objects) {
     percepts.masks = executor_->read(objects_.masks);
     percepts.location = executor_->read(objects_.location);
-    percepts.log_pose = executor_->read(objects_.log_pose);
+    if (objects_.log_pose) percepts.log_pose = executor_->read(objects_.log_pose);
+    if (objects_.rotation) percepts.rotation = executor_->read(objects_.rotation);
   }
   return percepts;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
 namespace vkopple {
@@ -40,6 +41,21 @@ std::array<double, 3> ego_motion(const CameraPose& a, const CameraPose& b) {
   const double y = b[1] - a[1];
   const double turn = b[3] - a[3] + std::numbers::pi;
   return {c * x + s * y, -s * x + c * y, turn - kTurn * std::floor(turn / kTurn) - std::numbers::pi};
+}
+
+std::array<double, 3> euler_angles(const std::array<double, 9>& rotation) {
+  return {std::atan2(-rotation[1], rotation[4]), std::asin(std::clamp(rotation[7], -1.0, 1.0)),
+          std::atan2(-rotation[6], rotation[8])};
+}
+
+std::array<double, 6> spatial_ego_motion(const CameraPose& a, const CameraPose& b) {
+  const glm::dmat4 step = glm::inverse(to_glm(a)) * to_glm(b);
+  glm::dquat turn = glm::normalize(glm::quat_cast(glm::dmat3(step)));
+  if (turn.w < 0) turn = -turn;
+  const glm::dvec3 axis(turn.x, turn.y, turn.z);
+  const double sine = glm::length(axis);
+  const glm::dvec3 vector = axis * (sine > 0 ? 2 * std::atan2(sine, turn.w) / sine : 2.0);
+  return {step[3][0], step[3][1], step[3][2], vector.x, vector.y, vector.z};
 }
 
 uint32_t resampling_index(double angle) {

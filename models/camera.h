@@ -23,6 +23,13 @@ Matrix4 relative(const CameraPose& a, const CameraPose& b);
 /// does.
 std::array<double, 3> ego_motion(const CameraPose& a, const CameraPose& b);
 
+/// Yaw, pitch and roll of a rotation Rz(yaw) · Rx(pitch) · Ry(roll), row-major; pitch from −π/2 to π/2.
+std::array<double, 3> euler_angles(const std::array<double, 9>& rotation);
+
+/// The camera's step in a's frame, and its turn from a to b in a's frame as a vector: the axis, as long as the
+/// angle, which is at most π.
+std::array<double, 6> spatial_ego_motion(const CameraPose& a, const CameraPose& b);
+
 /// Index of the resampling matrix of an angle in [−π, π]: whole degrees, halves to even, plus 180.
 uint32_t resampling_index(double angle);
 

@@ -30,16 +30,40 @@ std::string read_small_file(const std::string& path) {
   return text;
 }
 
+/// Members of `above` take the place of those of `base`; objects are joined member by member.
+nlohmann::json overlaid(nlohmann::json base, const nlohmann::json& above) {
+  if (!base.is_object() || !above.is_object()) return above;
+  for (const auto& [key, value] : above.items())
+    base[key] = base.contains(key) ? overlaid(base[key], value) : value;
+  return base;
+}
+
+/// Replaces "base": "PRESET" by what that preset says and the configuration does not. Presets without a base
+/// end the chain, so presets must not be each other's.
+void fill_in_base(nlohmann::json& value, std::string_view origin) {
+  if (!value.is_object() || !value.contains("base")) return;
+  const nlohmann::json name = value["base"];
+  const auto preset = name.is_string() ? find_preset(name.get<std::string>()) : std::nullopt;
+  if (!preset)
+    throw Error(fmt::format("{}: base is {}; give a preset, one of {}", origin, name.dump(),
+                            fmt::join(preset_names(), ", ")));
+  nlohmann::json base = parse_strict_json(*preset, fmt::format("preset {}", name.get<std::string>()));
+  fill_in_base(base, origin);
+  value.erase("base");
+  value = overlaid(std::move(base), value);
+}
+
 }  // namespace
 
 Config Config::parse(std::string_view text, std::string_view origin, std::span<const std::string> overrides) {
   nlohmann::json value = parse_strict_json(text, origin);
+  fill_in_base(value, origin);
   for (const std::string& assignment : overrides) override_value(value, assignment);
   JsonObject root(value, fmt::format("{}{}", origin, overrides.empty() ? "" : " with --set"), "");
   Config c;
   c.model = read_model_config(root.object("model"));
   c.rooms = read_rooms_config(root.object("rooms"), RoomsConfig{});
-  c.training = read_training_config(root.object("training"), c.rooms);
+  c.training = read_training_config(root.object("training"), c.model, c.rooms);
   root.finish();
   return c;
 }
@@ -64,6 +88,7 @@ std::string Config::to_json() const {
 std::vector<TrainingStage> Config::stages() const {
   if (!training.stages.empty()) return training.stages;
   TrainingStage all;
+  all.networks = networks_of(model);
   all.learning_rate = training.learning_rate;
   all.batch = training.batch;
   all.rooms = rooms;

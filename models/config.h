@@ -12,8 +12,9 @@
 namespace vkopple {
 
 /// Configuration of a run: {"model": {...}, "training": {...}, "rooms": {...}}. What is left out has the
-/// published model's value. Unknown keys, wrong types and impossible values are refused with the key's full
-/// name and the allowed range.
+/// published model's value, or with "base": "PRESET" that preset's: objects join member by member, all else
+/// takes the place of what the preset has. Unknown keys, wrong types and impossible values are refused with the
+/// key's full name and the allowed range.
 struct Config {
   ModelConfig model;
   TrainingConfig training;

@@ -29,7 +29,8 @@ Value imagination_net(LayerFactory& layers, const ModelConfig& config, Value x, 
     skips.push_back(
         down(layers, skips.back(), fmt::format("down{}", i), channels[i], i < kLevels ? norm : none));
   const Shape top = skips.back().shape();
-  const Value motion = layers.linear(condition, "linear", top.product(1, 4), Initial::kaiming_uniform(7, 1));
+  const Value motion = layers.linear(condition, "linear", top.product(1, 4),
+                                     Initial::kaiming_uniform(condition.shape().back(0), 1));
   Value y = add(skips.back(), to_channels4(layers.graph().reshape(motion, row_major(top))));
   for (size_t i = 1; i <= kLevels; ++i)
     y = up(layers, y, skips[kLevels - i].shape(), i <= kSkips ? skips[kLevels - i] : Value{},

@@ -50,9 +50,15 @@ Value LayerFactory::state(const std::string& name, int64_t size, double initial)
 }
 
 Initial LayerFactory::conv_initial(const Shape& weight) const {
-  return options_.initial == ConvInitial::kKaimingUniform
-             ? Initial::kaiming_uniform(fan_in(weight), leaky_gain())
-             : Initial::kaiming_normal(fan_in(weight), leaky_gain());
+  switch (options_.initial) {
+    case ConvInitial::kKaimingUniform:
+      return Initial::kaiming_uniform(fan_in(weight), leaky_gain());
+    case ConvInitial::kKaimingNormal:
+      return Initial::kaiming_normal(fan_in(weight), leaky_gain());
+    case ConvInitial::kFramework:
+      return Initial::framework(fan_in(weight));
+  }
+  throw Error("there is no such initial value of convolutions");
 }
 
 Value LayerFactory::conv(Value x, const std::string& name, int64_t channels, int64_t kernel, int64_t stride,

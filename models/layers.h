@@ -18,12 +18,12 @@ struct InitialTensor {
 };
 
 /// How a network's convolutions start.
-enum class ConvInitial { kKaimingUniform, kKaimingNormal };
+enum class ConvInitial { kKaimingUniform, kKaimingNormal, kFramework };
 
 /// What the layers of one network share: where its parameters live and how its layers behave. A layer asked for
 /// twice under one name gets the same parameters, so that a network can be applied several times.
 struct NetworkOptions {
-  std::string group;   ///< of the parameters: "depth", "object", "imagination"
+  std::string group;   ///< of the parameters: "depth", "object", "imagination", "motion"
   std::string prefix;  ///< of their names (docs/model.md §11)
   ConvInitial initial = ConvInitial::kKaimingUniform;
   double dropout = 0;

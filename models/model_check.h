@@ -11,7 +11,7 @@ class Device;
 
 /// The derivative of the total loss along one direction in one network's parameters.
 struct DirectionalCheck {
-  std::string group;      ///< "depth", "object", "imagination"
+  std::string group;      ///< "depth", "object", "imagination", "motion"
   std::string direction;  ///< "gradient" or "random"
   double analytic = 0;    ///< gradient · direction, from the backward pass
   double numeric = 0;     ///< central difference of the forward pass
@@ -20,10 +20,18 @@ struct DirectionalCheck {
   bool passed() const;
 };
 
-/// Checks the whole model at once, a small one on made-up images: what single ops' checks can't see is how they
+/// A model that is worth a check of its own: a variant, or sizes that are not the usual ones.
+struct CheckedModel {
+  std::string name;
+  ModelConfig config;
+};
+/// Small enough for differences to take seconds.
+std::vector<CheckedModel> checked_models();
+
+/// Checks the whole model at once, on made-up images: what single ops' checks can't see is how they
 /// are put together. Batch norm uses running averages: over the three numbers of a 1×1 map, batch statistics
 /// bend the loss more within a few float32 spacings than differences can follow (the training fixture pins them
 /// instead).
-std::vector<DirectionalCheck> check_model(const Device& device, StatisticsFrames frames);
+std::vector<DirectionalCheck> check_model(const Device& device, const ModelConfig& config);
 
 }  // namespace vkopple

@@ -7,9 +7,8 @@ namespace {
 
 constexpr int kLargestImage = 4096;
 constexpr int kMostChannels = 1024;
-// The pose resampling inverts a circulant matrix whose condition grows as exp(bins^2 / 800): beyond this double
-// precision fails.
-constexpr int kMostBins = 150;
+constexpr int kMostSlots = 254;  // whose masks, with the background, pictures of 8 bits can number
+constexpr int kMostBins = 3600;
 
 }  // namespace
 
@@ -18,8 +17,8 @@ ModelConfig read_model_config(JsonObject object) {
   object.integer("height", c.height, 4, kLargestImage);
   object.integer("width", c.width, 4, kLargestImage);
   object.number("fov", c.fov, 0.05, 3.0);
-  object.integer("slots", c.slots, 1, 32);
-  object.integer("bins", c.bins, 3, kMostBins);
+  object.integer("slots", c.slots, 1, kMostSlots);
+  object.integer("bins", c.bins, 1, kMostBins);
   object.integer("code", c.code, 1, kMostChannels);
   object.integer("identity", c.identity, 1, kMostChannels);
   object.integer("depth_width", c.depth_width, 1, kMostChannels);
@@ -30,8 +29,11 @@ ModelConfig read_model_config(JsonObject object) {
   object.number("max_height", c.max_height, 0.01, 10000);
   object.number("beta", c.beta, 0, 1000);
   object.number("reg", c.reg, 0, 1000);
+  object.number("smoothness", c.smoothness, 0, 1000);
+  object.number("pose_contrast", c.pose_contrast, 0, 1000);
   object.boolean("warp", c.warp);
   object.boolean("relaxed", c.relaxed);
+  object.choice("orientation", c.orientation, kOrientationNames);
   object.choice("pose_loss", c.pose_loss, kPoseLossNames);
   object.choice("statistics_frames", c.statistics_frames, kStatisticsFramesNames);
   object.numbers("dropout", c.dropout, 0, 0.95);
@@ -40,7 +42,13 @@ ModelConfig read_model_config(JsonObject object) {
     object.refuse("identity", "is " + std::to_string(c.identity) + "; give at most code, which is " +
                                   std::to_string(c.code));
   }
-  if (c.relaxed) object.refuse("relaxed", "is true, but learned motion is not built yet; give false");
+  if (c.orientation != Orientation::kYaw) {
+    if (c.relaxed)
+      object.refuse("relaxed",
+                    "is true, but learned motion reads yaw; give orientation \"yaw\", or false here");
+    if (c.pose_contrast > 0)
+      object.refuse("pose_contrast", "compares yaws; give orientation \"yaw\", or 0 here");
+  }
   return c;
 }
 
@@ -60,8 +68,11 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"max_height", c.max_height},
           {"beta", c.beta},
           {"reg", c.reg},
+          {"smoothness", c.smoothness},
+          {"pose_contrast", c.pose_contrast},
           {"warp", c.warp},
           {"relaxed", c.relaxed},
+          {"orientation", kOrientationNames[static_cast<std::size_t>(c.orientation)]},
           {"pose_loss", kPoseLossNames[static_cast<std::size_t>(c.pose_loss)]},
           {"statistics_frames", kStatisticsFramesNames[static_cast<std::size_t>(c.statistics_frames)]},
           {"dropout", c.dropout}};

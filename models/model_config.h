@@ -19,6 +19,13 @@ inline constexpr std::array<std::string_view, 2> kPoseLossNames{"kl", "js"};
 enum class StatisticsFrames { kAll, kSecond };
 inline constexpr std::array<std::string_view, 2> kStatisticsFramesNames{"all", "second"};
 
+/// What the slots say of an object's orientation (docs/model.md §8): a distribution over yaw, or three Euler
+/// angles.
+enum class Orientation { kYaw, kEuler };
+inline constexpr std::array<std::string_view, 2> kOrientationNames{"yaw", "euler"};
+/// Numbers of a slot for the angles' cosines and sines.
+inline constexpr int kEulerNumbers = 6;
+
 /// What fixes the model's shapes and formulas. The defaults are the published model's. Angles in radians,
 /// lengths in scene units.
 struct ModelConfig {
@@ -35,15 +42,21 @@ struct ModelConfig {
   int lstm = 256;
   double max_depth = 7.2;
   double max_height = 5.0;
-  double beta = 1.0;     ///< how fast the splat's weight falls with distance
-  double reg = 1.0;      ///< factor of the regularising losses
-  bool warp = true;      ///< false: only the imagined image is used (an ablation)
-  bool relaxed = false;  ///< true: learned motion; refused, it is not built yet
+  double beta = 1.0;         ///< how fast the splat's weight falls with distance
+  double reg = 1.0;          ///< factor of the regularising losses
+  double smoothness = 0;     ///< of the masks' spatial smoothness among them
+  double pose_contrast = 0;  ///< of the contrast of poses among them; of yaw alone
+  bool warp = true;          ///< false: only the imagined image is used (an ablation)
+  bool relaxed = false;      ///< true: learned motion; of yaw alone
+  Orientation orientation = Orientation::kYaw;
   PoseLossKind pose_loss = PoseLossKind::kKl;
   StatisticsFrames statistics_frames = StatisticsFrames::kAll;
   std::array<double, 3> dropout{0.05, 0.05, 0.0005};  ///< depth, object, imagination network
 
   bool operator==(const ModelConfig&) const = default;
+
+  /// Numbers of a slot that tell its orientation.
+  int orientation_numbers() const { return orientation == Orientation::kYaw ? bins : kEulerNumbers; }
 
   /// A model configuration alone, as a fixture's metadata has it. Throws Error naming origin and key.
   static ModelConfig parse(std::string_view json, std::string_view origin);

@@ -18,6 +18,9 @@ NetworkOptions network_options(const ModelConfig& config, const std::string& gro
   } else if (group == "imagination") {
     options.prefix = "imagination_model.imag_net.imag_net.";
     options.dropout = config.dropout[2];
+  } else if (group == "motion") {
+    options.prefix = "warping_model.";
+    options.initial = ConvInitial::kFramework;
   } else {
     throw Error("there is no network " + group);
   }

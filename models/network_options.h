@@ -7,8 +7,8 @@
 
 namespace vkopple {
 
-/// What the layers of "depth", "object" or "imagination" share (docs/model.md §2, §11). `random` may be empty
-/// where nothing is dropped.
+/// What the layers of "depth", "object", "imagination" or "motion" share (docs/model.md §2, §11). `random` may
+/// be empty where nothing is dropped.
 NetworkOptions network_options(const ModelConfig& config, const std::string& group, bool training, Value random,
                                uint64_t max_tensor_bytes);
 

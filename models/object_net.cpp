@@ -78,7 +78,7 @@ Value read_slots(LayerFactory& layers, const ModelConfig& config, Value top) {
   const Value b_ih = layers.parameter("rnn.bias_ih_l0", {4 * hidden}, Initial::framework(hidden));
   const Value b_hh = layers.parameter("rnn.bias_hh_l0", {4 * hidden}, Initial::framework(hidden));
   const Value h = leaky_relu(lstm(x, w_ih, w_hh, b_ih, b_hh, config.slots), kSlope);
-  const int64_t numbers = 3 + config.bins + config.code;
+  const int64_t numbers = 3 + config.orientation_numbers() + config.code;
   return layers.linear(h, "lin.1", numbers, Initial::framework(hidden));
 }
 
@@ -116,7 +116,7 @@ bool fits(const LayerFactory& layers, const ModelConfig& config, int64_t samples
 Value mask_logits(LayerFactory& layers, const ModelConfig& config, Value raw, const std::vector<Value>& skips) {
   const Scope scope(layers.graph(), "masks");
   const int64_t batch = raw.shape()[0];
-  const Value codes = permute(slice(raw, 2, 3 + config.bins, config.code), {1, 0, 2});
+  const Value codes = permute(slice(raw, 2, 3 + config.orientation_numbers(), config.code), {1, 0, 2});
   Value logits;
   if (fits(layers, config, config.slots * batch)) {
     logits = decode_masks(layers, config, codes, skips);

@@ -9,7 +9,7 @@ namespace vkopple {
 
 /// What the object network says of one frame of B images; row-major.
 struct ObjectOutputs {
-  Value raw;          ///< (B, K, 3 + bins + code), the slots' raw numbers
+  Value raw;          ///< (B, K, 3 + orientation + code), the slots' raw numbers
   Value mask_logits;  ///< (K, B, H, W), the background's is 0; empty where masks weren't asked for
 };
 

@@ -3,15 +3,12 @@
 #include "graph/ops/align.h"
 #include "graph/ops/binary.h"
 #include "graph/ops/decode_location.h"
+#include "graph/ops/euler_rotation.h"
 #include "graph/ops/match.h"
-#include "graph/ops/pose_resample.h"
-#include "graph/ops/rotate_pose.h"
-#include "graph/ops/rotation_angle.h"
-#include "graph/ops/rotation_posterior.h"
+#include "graph/ops/reduce_sum.h"
 #include "graph/ops/slice.h"
 #include "graph/ops/slot_masks.h"
 #include "graph/ops/softmax.h"
-#include "graph/ops/transform_points.h"
 
 namespace vkopple {
 
@@ -19,8 +16,13 @@ ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits
   ObjectState state;
   state.location = decode_location(raw, static_cast<float>(config.fov), static_cast<float>(config.max_depth),
                                    static_cast<float>(config.max_height));
-  state.log_pose = softmax(slice(raw, 2, 3, config.bins), 2, true);
-  state.code = slice(raw, 2, 3 + config.bins, config.code);
+  const int64_t numbers = config.orientation_numbers();
+  const Value orientation = slice(raw, 2, 3, numbers);
+  if (config.orientation == Orientation::kYaw)
+    state.log_pose = softmax(orientation, 2, true);
+  else
+    state.rotation = euler_rotation(orientation);
+  state.code = slice(raw, 2, 3 + numbers, config.code);
   state.mask_logits = mask_logits;
   if (mask_logits) state.masks = slot_masks(mask_logits);
   return state;
@@ -31,24 +33,26 @@ Matching match_objects(const ModelConfig& config, const ObjectState& a, const Ob
   return {.log_w = out[0], .q = out[1]};
 }
 
-ObjectMotion object_motion(const ModelConfig& config, const ObjectState& o1, const ObjectState& o2,
-                           const CameraMotion& camera) {
-  Graph& graph = o1.location.graph();
-  const Scope scope(graph, "motion");
-  const Matching matching = match_objects(config, o1, o2);
-  const auto aligned = align(matching.log_w, o1.location, o1.log_pose);
-  ObjectMotion motion;
-  motion.q = matching.q;
-  const Shape b_k = motion.q.shape();
-  const Value q = graph.reshape(motion.q, row_major({b_k[0], b_k[1], 1}));
-  motion.velocity = mul(sub(o2.location, transform_points(camera.m12, aligned[0])), q);
-  motion.location3 = transform_points(camera.m23, add(o2.location, motion.velocity));
-  const Value seen1 = pose_resample(aligned[1], camera.resampling, camera.index12);
-  const auto rotation = rotation_posterior(seen1, o2.log_pose);
-  motion.direction = rotation[1];
-  motion.omega = rotation_angle(motion.direction, motion.q);
-  motion.log_pose3 = pose_resample(rotate_pose(o2.log_pose, rotation[0]), camera.resampling, camera.index23);
-  return motion;
+ObjectState in_order_of(const Matching& matching, const ObjectState& a) {
+  ObjectState ordered;
+  if (a.log_pose) {
+    const auto aligned = align(matching.log_w, a.location, a.log_pose);
+    ordered.location = aligned[0];
+    ordered.log_pose = aligned[1];
+    return ordered;
+  }
+  // Σ_l w_kl x_l.
+  Graph& graph = a.location.graph();
+  const Shape k_l = matching.log_w.shape();
+  const Value w = graph.reshape(softmax(matching.log_w, 2, false), row_major({k_l[0], k_l[1], k_l[2], 1}));
+  const auto mean = [&](Value x) {
+    const Shape s = x.shape();
+    const Value parts = mul(w, graph.reshape(x, row_major({s[0], 1, s[1], s.product(2, s.rank())})));
+    return graph.reshape(reduce_sum(parts, {2}), row_major(s));
+  };
+  ordered.location = mean(a.location);
+  ordered.rotation = mean(a.rotation);
+  return ordered;
 }
 
 }  // namespace vkopple

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "graph/ops/align.h"
 #include "graph/ops/back_project.h"
 #include "graph/ops/blend.h"
 #include "graph/ops/centre_loss.h"
@@ -14,11 +13,11 @@
 #include "graph/ops/imagination_mix.h"
 #include "graph/ops/location_loss.h"
 #include "graph/ops/move_background.h"
-#include "graph/ops/move_pixels.h"
-#include "graph/ops/pose_loss.h"
+#include "graph/ops/pose_contrast.h"
 #include "graph/ops/project.h"
 #include "graph/ops/relayout.h"
 #include "graph/ops/slice.h"
+#include "graph/ops/smoothness_loss.h"
 #include "graph/ops/splat.h"
 #include "graph/ops/warp_share.h"
 #include "graph/ops/weighted_sum.h"
@@ -26,7 +25,6 @@
 #include "models/imagination_net.h"
 #include "models/network_options.h"
 #include "models/object_net.h"
-#include "models/pose_resampling.h"
 #include "runtime/error.h"
 
 namespace vkopple {
@@ -55,13 +53,8 @@ void Opple::declare_inputs() {
   image2_ = take_outer(images_, b, b);
   image3_ = take_outer(images_, 2 * b, b);
   random_ = g.state("random", "random", unsigned_ints({2}));
-  camera_.m23 = g.input("m23", row_major({b, 4, 4}));
+  camera_ = CameraMotion(g, config_, b, options_.background_only);
   if (options_.background_only) return;
-  camera_.m12 = g.input("m12", row_major({b, 4, 4}));
-  camera_.ego23 = g.input("ego23", row_major({b, 3}));
-  camera_.index12 = g.input("index12", unsigned_ints({b}));
-  camera_.index23 = g.input("index23", unsigned_ints({b}));
-  camera_.resampling = g.input("resampling", row_major({kResamplingAngles, config_.bins, config_.bins}));
   permutation_ =
       g.input("permutation", unsigned_ints({several(options_.peers) ? b * options_.peers->count() : b}));
 }
@@ -125,10 +118,11 @@ void Opple::build_all() {
   const Value images4 = to_channels4(images_);
   const Value depth = see_depth(images4);
   const auto o = see_objects(images4);
-  const ObjectMotion motion = object_motion(config_, o[0], o[1], camera_);
+  LayerFactory* const learned = config_.relaxed ? &factory("motion") : nullptr;
+  const ObjectMotion motion = object_motion(config_, o[0], o[1], camera_, learned);
 
   const Value points2 = back_project(depth, fov);
-  const Value points3 = move_pixels(points2, o[1].location, motion.velocity, motion.omega, camera_.m23);
+  const Value points3 = moved_pixels(o[1], motion, camera_, learned, points2);
   const auto warp = splat(image2_, project(points3, fov), o[1].masks, as_float(config_.beta));
   warped_ = warp[0];
   warped_depth_ = warp[1];
@@ -146,8 +140,10 @@ void Opple::build_all() {
                                             {"velocity", motion.velocity},
                                             {"omega", motion.omega},
                                             {"direction", motion.direction},
-                                            {"location3", motion.location3},
-                                            {"log_pose3", motion.log_pose3},
+                                            {"turn_vector", motion.turn_vector},
+                                            {"location3", motion.predicted.location},
+                                            {"log_pose3", motion.predicted.log_pose},
+                                            {"rotation3", motion.predicted.rotation},
                                             {"warped", warped_},
                                             {"warped_depth", warped_depth_},
                                             {"share", share_},
@@ -160,7 +156,8 @@ void Opple::build_all() {
 
 void Opple::imagine(const ObjectState& o2, Value depth, const ObjectMotion& motion) {
   const Value x = imagination_input(image2_, depth, o2.masks);
-  const Value condition = imagination_condition(camera_.ego23, motion.velocity, motion.direction);
+  const Value turn = motion.turn_vector ? motion.turn_vector : motion.direction;
+  const Value condition = imagination_condition(camera_.ego23, motion.velocity, turn);
   const Value y = imagination_net(factory("imagination"), config_, x, condition);
   const auto mixed = imagination_mix(y, config_.slots + 1, as_float(config_.max_depth));
   imagined_ = mixed[0];
@@ -170,33 +167,46 @@ void Opple::imagine(const ObjectState& o2, Value depth, const ObjectMotion& moti
 void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& motion, Value points2) {
   const Scope scope(*graph_, "losses");
   const Matching matching = match_objects(config_, o[1], o[2]);
-  const auto aligned = align(matching.log_w, motion.location3, motion.log_pose3);
-  const auto divergence = config_.pose_loss == PoseLossKind::kJs ? PoseDivergence::kJs : PoseDivergence::kKl;
+  const ObjectState predicted = in_order_of(matching, motion.predicted);
   losses_["image"] = image_loss(predicted_, image3_);
   losses_["centre"] = centre_loss(o[1].masks, points2, o[1].location);
-  losses_["location"] = location_loss(aligned[0], o[2].location, matching.q);
-  losses_["pose"] = pose_loss(o[2].log_pose, aligned[1], matching.q, divergence);
-  // It alone joins scenes, which may be of different processes.
+  losses_["location"] = location_loss(predicted.location, o[2].location, matching.q);
+  losses_["pose"] = orientation_loss(config_, predicted, o[2], matching.q);
+  // Terms that join scenes need the whole batch, which may be of several processes.
   const auto whole_batch = [&](Value part) { return gather_batch(part, options_.peers); };
   losses_["collapse"] = collapse_loss(whole_batch(o[0].location), whole_batch(o[2].location),
                                       whole_batch(matching.q), permutation_);
-  const float reg = as_float(config_.reg);
-  losses_["total"] = weighted_sum(
-      {losses_["image"], losses_["centre"], losses_["location"], losses_["pose"], losses_["collapse"]},
-      {1.0F, reg, reg, reg, reg});
+  const double reg = config_.reg;
+  std::vector<Value> terms{losses_["image"]};
+  std::vector<float> factors{1.0F};
+  const auto weigh = [&](const std::string& name, double factor) {
+    terms.push_back(losses_.at(name));
+    factors.push_back(as_float(factor));
+  };
+  for (const char* name : {"centre", "location", "pose", "collapse"}) weigh(name, reg);
+  if (config_.smoothness > 0) {
+    losses_["smoothness"] = smoothness_loss(o[1].masks);
+    weigh("smoothness", reg * config_.smoothness);
+  }
+  if (config_.pose_contrast > 0) {
+    losses_["pose_contrast"] = pose_contrast(whole_batch(o[0].log_pose), whole_batch(o[2].log_pose),
+                                             whole_batch(matching.q), permutation_, pose_divergence(config_));
+    weigh("pose_contrast", reg * config_.pose_contrast);
+  }
+  losses_["total"] = weighted_sum(terms, factors);
   loss_ = losses_["total"];
   for (const auto& [name, value] : losses_) graph_->keep("loss/" + name, value);
 }
 
 void Opple::keep(const std::string& name, Value value) {
-  if (options_.keep_stages) graph_->keep("out/" + name, value);
+  if (value && options_.keep_stages) graph_->keep("out/" + name, value);
 }
 
 void Opple::keep_objects(const std::string& name, const ObjectState& state) {
   keep(name + ".location", state.location);
   keep(name + ".log_pose", state.log_pose);
   keep(name + ".code", state.code);
-  if (!state.masks) return;
+  keep(name + ".rotation", state.rotation);
   keep(name + ".mask_logits", state.mask_logits);
   keep(name + ".masks", state.masks);
 }
@@ -231,27 +241,8 @@ void Opple::feed(Executor& executor, const Triplets& triplets) const {
     throw Error(fmt::format("{} camera poses were given for a batch of {}; three each are needed",
                             triplets.poses.size(), b));
   feed_images(executor, triplets);
-  std::vector<float> m12;
-  std::vector<float> m23;
-  std::vector<float> ego23;
-  std::vector<uint32_t> index12;
-  std::vector<uint32_t> index23;
-  for (size_t i = 0; i < b; ++i) {
-    const CameraPose& p1 = triplets.poses[i];
-    const CameraPose& p2 = triplets.poses[b + i];
-    const CameraPose& p3 = triplets.poses[2 * b + i];
-    for (double v : relative(p1, p2)) m12.push_back(as_float(v));
-    for (double v : relative(p2, p3)) m23.push_back(as_float(v));
-    for (double v : ego_motion(p2, p3)) ego23.push_back(as_float(v));
-    index12.push_back(resampling_index(-ego_motion(p1, p2)[2]));
-    index23.push_back(resampling_index(-ego_motion(p2, p3)[2]));
-  }
-  executor.write(camera_.m23, m23);
+  camera_.feed(executor, triplets.poses);
   if (options_.background_only) return;
-  executor.write(camera_.m12, m12);
-  executor.write(camera_.ego23, ego23);
-  executor.write_words(camera_.index12, index12);
-  executor.write_words(camera_.index23, index23);
   executor.write_words(permutation_, triplets.permutation);
 }
 
@@ -261,7 +252,7 @@ void Opple::feed_constants(Executor& executor) const {
     executor.write(ones, std::vector<float>(static_cast<size_t>(ones.shape().elements()), 1.0F));
     return;
   }
-  executor.write(camera_.resampling, resampling_matrices(config_.bins));
+  camera_.feed_constants(executor);
 }
 
 void Opple::feed_random(Executor& executor, uint32_t seed, uint32_t step) const {

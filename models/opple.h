@@ -8,10 +8,9 @@
 #include "graph/executor.h"
 #include "graph/graph.h"
 #include "graph/parallel/peers.h"
-#include "models/camera.h"
 #include "models/layers.h"
 #include "models/model_config.h"
-#include "models/object_state.h"
+#include "models/object_motion.h"
 #include "models/precision.h"
 
 namespace vkopple {
@@ -48,7 +47,7 @@ class Opple {
   const std::map<std::string, Value>& losses() const { return losses_; }
   /// Parameters and running averages with what they start from.
   std::vector<InitialTensor> tensors() const;
-  /// "depth", "object", "imagination", as far as the graph has them.
+  /// "depth", "object", "imagination", "motion", as far as the graph has them.
   std::vector<std::string> groups() const;
 
   Value images() const { return images_; }
@@ -56,7 +55,7 @@ class Opple {
   int first_frame() const { return options_.background_only ? 1 : 0; }
   /// Writes images, camera motion and permutation. Throws Error on sizes that don't fit.
   void feed(Executor& executor, const Triplets& triplets) const;
-  /// Writes what stays: the pose resampling matrices. Once, after the executor is made.
+  /// Writes what stays: what yaw is resampled with. Once, after the executor is made.
   void feed_constants(Executor& executor) const;
   /// Sets the counters that dropout draws from.
   void feed_random(Executor& executor, uint32_t seed, uint32_t step) const;

@@ -27,7 +27,8 @@ Percepts Perception::see(std::span<const float> images) {
   if (options_.objects) {
     percepts.masks = executor_->read(objects_.masks);
     percepts.location = executor_->read(objects_.location);
-    percepts.log_pose = executor_->read(objects_.log_pose);
+    if (objects_.log_pose) percepts.log_pose = executor_->read(objects_.log_pose);
+    if (objects_.rotation) percepts.rotation = executor_->read(objects_.rotation);
   }
   return percepts;
 }

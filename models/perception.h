@@ -18,7 +18,8 @@ struct Percepts {
   std::vector<float> depth;     ///< (B, H, W), scene units
   std::vector<float> masks;     ///< (B, K+1, H, W), background last; empty without objects
   std::vector<float> location;  ///< (B, K, 3), camera frame; empty without objects
-  std::vector<float> log_pose;  ///< (B, K, bins); empty without objects
+  std::vector<float> log_pose;  ///< (B, K, bins); empty without objects or yaw
+  std::vector<float> rotation;  ///< (B, K, 3, 3), object to camera; empty without objects or Euler angles
 };
 
 struct PerceptionOptions {

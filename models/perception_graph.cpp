@@ -26,7 +26,8 @@ PerceptionGraph perception_graph(Graph& graph, const ModelConfig& config, int64_
   made.objects = object_state(config, out.raw, out.mask_logits);
   graph.keep("masks", made.objects.masks);
   graph.keep("location", made.objects.location);
-  graph.keep("log_pose", made.objects.log_pose);
+  if (made.objects.log_pose) graph.keep("log_pose", made.objects.log_pose);
+  if (made.objects.rotation) graph.keep("rotation", made.objects.rotation);
   graph.keep("code", made.objects.code);
   return made;
 }

@@ -17,8 +17,8 @@ struct PerceptionGraph {
   std::vector<InitialTensor> tensors;  ///< parameters and running averages
 };
 
-/// Keeps what it gives under the names "depth", "masks", "location", "log_pose" and "code". Without `objects`:
-/// depth alone.
+/// Keeps what it gives under the names "depth", "masks", "location", "log_pose" (or "rotation", of Euler
+/// angles) and "code". Without `objects`: depth alone.
 PerceptionGraph perception_graph(Graph& graph, const ModelConfig& config, int64_t batch, bool objects,
                                  uint64_t max_tensor_bytes = ~uint64_t{0});
 

@@ -9,12 +9,22 @@ constexpr int kLargestBatch = 4096;
 constexpr double kSmallestRate = 1e-12;
 constexpr std::size_t kMostStages = 100;
 
-TrainingStage read_stage(JsonObject object, const TrainingConfig& training, const RoomsConfig& rooms) {
+/// What a stage takes over from its surroundings.
+struct StageDefaults {
+  const TrainingConfig& training;
+  const std::vector<Network> networks;
+  const RoomsConfig& rooms;
+};
+
+TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   TrainingStage s;
-  s.learning_rate = training.learning_rate;
-  s.batch = training.batch;
+  s.networks = defaults.networks;
+  s.learning_rate = defaults.training.learning_rate;
+  s.batch = defaults.training.batch;
   object.text("name", s.name);
   object.choices("networks", s.networks, kNetworkNames);
+  if (s.learns(Network::kMotion) && defaults.networks.size() < kNetworkNames.size())
+    object.refuse("networks", "has motion, which is learned only where model.relaxed is true");
   object.choice("hypotheses", s.hypotheses, kHypothesesNames);
   if (s.hypotheses == Hypotheses::kBackground && s.networks != std::vector{Network::kDepth})
     object.refuse("networks", "must be [\"depth\"] where only the background's hypothesis warps");
@@ -23,7 +33,7 @@ TrainingStage read_stage(JsonObject object, const TrainingConfig& training, cons
   if (steps > 0) s.steps = steps;
   object.number("learning_rate", s.learning_rate, kSmallestRate, 1);
   object.integer("batch", s.batch, 1, kLargestBatch);
-  s.rooms = read_rooms_config(object.object("rooms"), rooms);
+  s.rooms = read_rooms_config(object.object("rooms"), defaults.rooms);
   object.finish();
   const bool plain = std::all_of(s.name.begin(), s.name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -53,10 +63,11 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& ro
   return result;
 }
 
-void read_stages(JsonObject& object, TrainingConfig& c, const RoomsConfig& rooms) {
+void read_stages(JsonObject& object, TrainingConfig& c, const ModelConfig& model, const RoomsConfig& rooms) {
+  const StageDefaults defaults{c, networks_of(model), rooms};
   std::vector<JsonObject> listed = object.objects("stages", kMostStages);
   for (std::size_t i = 0; i < listed.size(); ++i) {
-    const TrainingStage stage = read_stage(listed[i], c, rooms);
+    const TrainingStage stage = read_stage(listed[i], defaults);
     const bool taken =
         std::any_of(c.stages.begin(), c.stages.end(), [&](const auto& s) { return s.name == stage.name; });
     if (taken) listed[i].refuse("name", "is another stage's too; give each its own");
@@ -73,7 +84,13 @@ bool TrainingStage::learns(Network network) const {
   return std::find(networks.begin(), networks.end(), network) != networks.end();
 }
 
-TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms) {
+std::vector<Network> networks_of(const ModelConfig& model) {
+  std::vector<Network> networks{Network::kDepth, Network::kObject, Network::kImagination};
+  if (model.relaxed) networks.push_back(Network::kMotion);
+  return networks;
+}
+
+TrainingConfig read_training_config(JsonObject object, const ModelConfig& model, const RoomsConfig& rooms) {
   TrainingConfig c;
   object.integer("batch", c.batch, 1, kLargestBatch);
   object.number("learning_rate", c.learning_rate, kSmallestRate, 1);
@@ -83,11 +100,12 @@ TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms)
   clip.number("depth", c.clip.depth, 1e-9, 1e9);
   clip.number("object", c.clip.object, 1e-9, 1e9);
   clip.number("imagination", c.clip.imagination, 1e-9, 1e9);
+  clip.number("motion", c.clip.motion, 1e-9, 1e9);
   clip.finish();
   object.choice("precision", c.precision, kPrecisionNames);
   object.boolean("sync_batch_norm", c.sync_batch_norm);
   object.number("reverse_probability", c.reverse_probability, 0, 1);
-  read_stages(object, c, rooms);
+  read_stages(object, c, model, rooms);
   object.finish();
   return c;
 }
@@ -95,12 +113,15 @@ TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms)
 nlohmann::ordered_json write_training_config(const TrainingConfig& c, const RoomsConfig& rooms) {
   auto stages = nlohmann::ordered_json::array();
   for (const TrainingStage& stage : c.stages) stages.push_back(write_stage(stage, rooms));
-  nlohmann::ordered_json result{
-      {"batch", c.batch},
-      {"learning_rate", c.learning_rate},
-      {"betas", c.betas},
-      {"epsilon", c.epsilon},
-      {"clip", {{"depth", c.clip.depth}, {"object", c.clip.object}, {"imagination", c.clip.imagination}}}};
+  nlohmann::ordered_json result{{"batch", c.batch},
+                                {"learning_rate", c.learning_rate},
+                                {"betas", c.betas},
+                                {"epsilon", c.epsilon},
+                                {"clip",
+                                 {{"depth", c.clip.depth},
+                                  {"object", c.clip.object},
+                                  {"imagination", c.clip.imagination},
+                                  {"motion", c.clip.motion}}}};
   // Left out where it is the default: checkpoints of float32 stay as they were before there was a choice.
   if (c.precision != Precision::kFloat32)
     result["precision"] = kPrecisionNames[static_cast<std::size_t>(c.precision)];

@@ -8,14 +8,17 @@
 #include <string_view>
 #include <vector>
 
+#include "models/model_config.h"
 #include "models/precision.h"
 #include "models/rooms_config.h"
 #include "models/strict_json.h"
 
 namespace vkopple {
 
-enum class Network { kDepth, kObject, kImagination };
-inline constexpr std::array<std::string_view, 3> kNetworkNames{"depth", "object", "imagination"};
+enum class Network { kDepth, kObject, kImagination, kMotion };
+inline constexpr std::array<std::string_view, 4> kNetworkNames{"depth", "object", "imagination", "motion"};
+/// Those that a model has: motion is learned in the relaxed one alone.
+std::vector<Network> networks_of(const ModelConfig& model);
 
 /// Which hypotheses of motion warp the image: every object's and the background's, or the background's alone.
 enum class Hypotheses { kAll, kBackground };
@@ -42,6 +45,7 @@ struct TrainingConfig {
     double depth = 2.5;
     double object = 1.0;
     double imagination = 1.0;
+    double motion = 1.0;
     bool operator==(const Clip&) const = default;
   };
 
@@ -58,9 +62,9 @@ struct TrainingConfig {
   bool operator==(const TrainingConfig&) const = default;
 };
 
-/// Reads the object's members over the defaults, stages over these and `rooms`; throws Error naming file and
-/// key.
-TrainingConfig read_training_config(JsonObject object, const RoomsConfig& rooms);
+/// Reads the object's members over the defaults, stages over these, `rooms` and the model's networks; throws
+/// Error naming file and key.
+TrainingConfig read_training_config(JsonObject object, const ModelConfig& model, const RoomsConfig& rooms);
 /// Of each stage's rooms only what differs from `rooms` is written.
 nlohmann::ordered_json write_training_config(const TrainingConfig& config, const RoomsConfig& rooms);
 

@@ -81,12 +81,17 @@ class Parity {
         device_, built->graph, ExecutorOptions{.loss = built->model->loss(), .trained = groups});
     for (const InitialTensor& t : built->model->tensors()) {
       const bool average = t.name.ends_with(".running_mean") || t.name.ends_with(".running_var");
-      const auto& sizes = t.value.shape().sizes();
-      built->executor->write(t.value, file_.read_floats((average ? "buffer/" : "param/") + t.name,
-                                                        StoredShape(sizes.begin(), sizes.end())));
+      built->executor->write(t.value, weights((average ? "buffer/" : "param/") + t.name, t.value.shape()));
     }
     built->model->feed_constants(*built->executor);
     return built;
+  }
+
+  /// 1×1 convolutions may be stored as matrices, without their last two sizes.
+  std::vector<float> weights(const std::string& name, const Shape& shape) const {
+    StoredShape sizes(shape.sizes().begin(), shape.sizes().end());
+    if (sizes.size() == 4 && sizes[2] == 1 && sizes[3] == 1 && file_.shape(name).size() == 2) sizes.resize(2);
+    return file_.read_floats(name, sizes);
   }
 
   Triplets triplets(size_t roll, size_t count) const {

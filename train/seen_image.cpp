@@ -21,17 +21,25 @@ double share_of(const Plane<std::uint32_t>& mask, std::uint32_t index) {
   return static_cast<double>(count) / static_cast<double>(mask.pixels.size());
 }
 
-SeenObject object(std::span<const float> location, std::span<const float> log_pose) {
-  SeenObject seen;
-  std::copy(location.begin(), location.end(), seen.location.begin());
-  seen.angle = std::atan2(seen.location[0], seen.location[1]);
-  seen.distance = std::hypot(seen.location[0], seen.location[1]);
+void set_yaw(SeenObject& seen, std::span<const float> log_pose) {
   const auto best = std::max_element(log_pose.begin(), log_pose.end());
   const auto bin = static_cast<double>(best - log_pose.begin());
   seen.yaw = 2 * std::numbers::pi * bin / static_cast<double>(log_pose.size());
   for (const float log_probability : log_pose)
     seen.pose.push_back(std::exp(static_cast<double>(log_probability)));
   seen.yaw_probability = *std::max_element(seen.pose.begin(), seen.pose.end());
+}
+
+SeenObject object(std::span<const float> location, std::span<const float> log_pose,
+                  std::span<const float> rotation) {
+  SeenObject seen;
+  std::copy(location.begin(), location.end(), seen.location.begin());
+  seen.angle = std::atan2(seen.location[0], seen.location[1]);
+  seen.distance = std::hypot(seen.location[0], seen.location[1]);
+  if (rotation.empty())
+    set_yaw(seen, log_pose);
+  else
+    std::copy(rotation.begin(), rotation.end(), seen.rotation.emplace().begin());
   return seen;
 }
 
@@ -44,10 +52,13 @@ void add_objects(SeenImage& seen, const Percepts& percepts) {
   const auto indices = mask_indices(percepts.masks, static_cast<int64_t>(seen.background) + 1);
   std::copy(indices.begin(), indices.end(), seen.mask.pixels.begin());
   const size_t slots = seen.background;
-  const size_t bins = percepts.log_pose.size() / slots;
+  const auto of_slot = [&](const std::vector<float>& values, size_t k) {
+    const size_t each = values.size() / slots;
+    return std::span(values).subspan(each * k, each);
+  };
   for (size_t k = 0; k < slots; ++k)
-    seen.objects.push_back(object(std::span(percepts.location).subspan(3 * k, 3),
-                                  std::span(percepts.log_pose).subspan(bins * k, bins)));
+    seen.objects.push_back(
+        object(of_slot(percepts.location, k), of_slot(percepts.log_pose, k), of_slot(percepts.rotation, k)));
   count_shares(seen);
 }
 
@@ -55,7 +66,8 @@ void add_objects(SeenImage& seen, const Percepts& percepts) {
 
 SeenImage see_image(Perception& model, const RgbImage& image) {
   const Percepts percepts = model.see(image.pixels);
-  for (const auto* values : {&percepts.depth, &percepts.masks, &percepts.location, &percepts.log_pose})
+  for (const auto* values :
+       {&percepts.depth, &percepts.masks, &percepts.location, &percepts.log_pose, &percepts.rotation})
     require_numbers(*values);
   SeenImage seen{{image.height, image.width}, {image.height, image.width}, {}};
   seen.background = static_cast<std::uint32_t>(model.config().slots);
@@ -83,9 +95,13 @@ nlohmann::ordered_json to_json(const SeenImage& seen) {
                        {"share", o.share},
                        {"location", o.location},
                        {"angle", o.angle},
-                       {"distance", o.distance},
-                       {"yaw", o.yaw},
-                       {"yaw_probability", o.yaw_probability}});
+                       {"distance", o.distance}});
+    if (o.rotation) {
+      objects.back()["rotation"] = *o.rotation;
+    } else {
+      objects.back()["yaw"] = o.yaw;
+      objects.back()["yaw_probability"] = o.yaw_probability;
+    }
   }
   return {{"height", seen.mask.height},
           {"width", seen.mask.width},

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "models/perception.h"
@@ -12,13 +13,14 @@ namespace vkopple {
 
 /// What one slot of the model says of an object. Camera frame: x right, y forward, z up.
 struct SeenObject {
-  std::array<double, 3> location{};  ///< scene units
-  double angle = 0;                  ///< atan2(x, y), radians: to the right of straight ahead
-  double distance = 0;               ///< √(x² + y²), scene units
-  double yaw = 0;                    ///< middle of the most likely bin, radians from 0 to 2π
-  double yaw_probability = 0;        ///< of that bin
-  std::vector<double> pose;          ///< probability of every bin of yaw
-  double share = 0;                  ///< of the picture's pixels, from 0 to 1
+  std::array<double, 3> location{};               ///< scene units
+  double angle = 0;                               ///< atan2(x, y), radians: to the right of straight ahead
+  double distance = 0;                            ///< √(x² + y²), scene units
+  double yaw = 0;                                 ///< middle of the most likely bin, radians from 0 to 2π
+  double yaw_probability = 0;                     ///< of that bin
+  std::vector<double> pose;                       ///< probability of every bin of yaw
+  std::optional<std::array<double, 9>> rotation;  ///< instead of a yaw: object to camera, row by row
+  double share = 0;                               ///< of the picture's pixels, from 0 to 1
 };
 
 /// What the model sees in a picture.

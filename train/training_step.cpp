@@ -23,6 +23,8 @@ double clip_of(const TrainingConfig& training, Network network) {
       return training.clip.object;
     case Network::kImagination:
       return training.clip.imagination;
+    case Network::kMotion:
+      return training.clip.motion;
   }
   return training.clip.object;
 }

@@ -9,16 +9,16 @@ void check_location_loss(CheckList& list) {
     HostTensor y({1});
     for (int64_t b = 0; b < x[2].shape[0]; ++b)
       for (int64_t k = 0; k < x[2].shape[1]; ++k)
-        for (int64_t d = 0; d < 3; ++d) {
+        for (int64_t d = 0; d < x[0].shape[2]; ++d) {
           const double difference = x[0].at(b, k, d) - x[1].at(b, k, d);
           y.values[0] += x[2].at(b, k) * difference * difference / static_cast<double>(x[2].shape[0]);
         }
     return HostTensors{y};
   };
-  for (const Shape& q : {Shape{1, 1}, Shape{2, 3}, Shape{20, 3}, Shape{131, 5}})
-    list.push_back({.label = q.text(),
+  for (const Shape& x : {Shape{1, 1, 3}, Shape{2, 3, 3}, Shape{20, 3, 3}, Shape{131, 5, 3}, Shape{7, 2, 9}})
+    list.push_back({.label = x.text(),
                     .op = std::make_shared<LocationLoss>(),
-                    .inputs = {row_major({q[0], q[1], 3}), row_major({q[0], q[1], 3}), row_major(q)},
+                    .inputs = {row_major(x), row_major(x), row_major({x[0], x[1]})},
                     .reference = reference,
                     .ranges = {{-2, 2}, {-2, 2}, {0, 1}}});
 }

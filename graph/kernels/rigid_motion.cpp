@@ -1,5 +1,7 @@
 #include "graph/kernels/rigid_motion.h"
 
+#include <algorithm>
+
 namespace vkopple {
 namespace {
 
@@ -12,6 +14,9 @@ struct MovePush {
 /// An invocation's pixels, enough to make up for loading what moves them.
 constexpr uint32_t kPixelsForward = 16;
 constexpr uint32_t kPixelsBackward = 4;
+/// Pixels that one invocation sums at first, as long as that leaves the second one few enough.
+constexpr uint32_t kStripPixels = 64;
+constexpr uint32_t kMostStrips = 512;
 
 MovePush push_of(const RigidMotion& sizes, uint32_t pixels, bool accumulate) {
   return {sizes, (sizes.pixels + pixels - 1) / pixels, accumulate ? 1U : 0U};
@@ -19,19 +24,24 @@ MovePush push_of(const RigidMotion& sizes, uint32_t pixels, bool accumulate) {
 
 }  // namespace
 
-void record_moved(Recorder& recorder, const RigidMotion& sizes, const Slice& points, const MotionSlices& motion,
-                  const Slice& moved) {
+void record_moved(Recorder& recorder, const RigidMotion& sizes, Turns turns, const Slice& points,
+                  const MotionSlices& motion, const Slice& moved) {
   const MovePush push = push_of(sizes, kPixelsForward, false);
-  recorder.dispatch_flat("move_pixels.forward",
+  recorder.dispatch_flat(turns == Turns::kAngles ? "move_pixels.forward" : "move_pixels.forward_turns",
                          static_cast<uint64_t>(sizes.images) * (sizes.slots + 1) * push.strips,
-                         {motion.location, motion.velocity, motion.omega, motion.m23, points, moved}, push);
+                         {motion.location, motion.velocity, motion.turn, motion.m23, points, moved}, push);
 }
 
-void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, const MotionSlices& motion,
+void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, Turns turns, const MotionSlices& motion,
                           const Slice& dmoved, const Slice& dpoints, bool accumulate) {
   const MovePush push = push_of(sizes, kPixelsBackward, accumulate);
-  recorder.dispatch_flat("move_pixels.points", static_cast<uint64_t>(sizes.images) * push.strips,
-                         {motion.location, motion.velocity, motion.omega, motion.m23, dmoved, dpoints}, push);
+  recorder.dispatch_flat(turns == Turns::kAngles ? "move_pixels.points" : "move_pixels.points_turns",
+                         static_cast<uint64_t>(sizes.images) * push.strips,
+                         {motion.location, motion.velocity, motion.turn, motion.m23, dmoved, dpoints}, push);
+}
+
+uint32_t motion_strips(const RigidMotion& sizes) {
+  return std::min(kMostStrips, (sizes.pixels + kStripPixels - 1) / kStripPixels);
 }
 
 }  // namespace vkopple

@@ -16,16 +16,22 @@ struct RigidMotion {
 struct MotionSlices {
   Slice location;  ///< (B, K, 3)
   Slice velocity;  ///< (B, K, 3)
-  Slice omega;     ///< (B, K)
+  Slice turn;      ///< (B, K), angles about the z axis; or (B, K, 3, 3), rotations
   Slice m23;       ///< (B, 4, 4)
 };
 
-/// moved (B, K+1, 3, H, W) from points (B, 3, H, W): M [Rz(ω)(P − X) + X + v] for objects, M P for the
-/// background.
-void record_moved(Recorder& recorder, const RigidMotion& sizes, const Slice& points, const MotionSlices& motion,
-                  const Slice& moved);
+/// What the turns of objects are given as.
+enum class Turns { kAngles, kMatrices };
+
+/// moved (B, K+1, 3, H, W) from points (B, 3, H, W): M [R (P − X) + X + v] for objects, M P for the background.
+void record_moved(Recorder& recorder, const RigidMotion& sizes, Turns turns, const Slice& points,
+                  const MotionSlices& motion, const Slice& moved);
 /// Writes or adds the gradient with respect to the points.
-void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, const MotionSlices& motion,
+void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, Turns turns, const MotionSlices& motion,
                           const Slice& dmoved, const Slice& dpoints, bool accumulate);
+
+/// Invocations that share the pixels of an object when what comes back to its motion is summed: as many pixels
+/// to each as leave few enough of them.
+uint32_t motion_strips(const RigidMotion& sizes);
 
 }  // namespace vkopple

@@ -4,9 +4,10 @@
 
 namespace vkopple {
 
-/// What the imagination network is told of each hypothesis, (B, K+1, 7): the camera's motion `ego` (B, 3), the
-/// object's velocity x and y of (B, K, 3) and its direction of rotation (B, K, 2). The background, last, stands
-/// still: (ego, 0, 0, 1, 0). Nothing flows back into ego.
+/// What the imagination network is told of each hypothesis: the camera's motion `ego` (B, E), the object's
+/// velocity (B, K, 3) and its turn. A turn (B, K, 2) is a direction in the plane, and only the velocity's x and
+/// y are told: (B, K+1, E + 4). A turn (B, K, 3) is a vector of space: (B, K+1, E + 6). The background, last,
+/// stands still: (ego, 0, 0, 1, 0), or zeros after ego. Nothing flows back into ego.
 class ImaginationCondition : public Op {
  public:
   std::string_view name() const override { return "imagination_condition"; }
@@ -17,6 +18,6 @@ class ImaginationCondition : public Op {
   void record_backward(Recorder& recorder, const Backward& io) const override;
 };
 
-Value imagination_condition(Value ego, Value velocity, Value direction);
+Value imagination_condition(Value ego, Value velocity, Value turn);
 
 }  // namespace vkopple

@@ -8,13 +8,14 @@ namespace {
 
 struct LocationLossPush {
   uint32_t objects;
-  float scale;  ///< 1 / B
+  uint32_t numbers;  ///< D
+  float scale;       ///< 1 / B
   uint32_t wants;
   uint32_t accumulates;  ///< bit i of both speaks of input i
 };
 
-LocationLossPush push_for(const Shape& q) {
-  return {.objects = u32(q.elements()), .scale = 1.0F / static_cast<float>(q[0])};
+LocationLossPush push_for(const Shape& x) {
+  return {.objects = u32(x[0] * x[1]), .numbers = u32(x[2]), .scale = 1.0F / static_cast<float>(x[0])};
 }
 
 }  // namespace
@@ -23,10 +24,10 @@ std::vector<TensorSpec> LocationLoss::infer(std::span<const TensorSpec> x) const
   require(x.size() == 3, "takes three inputs");
   for (const TensorSpec& spec : x)
     require(spec.layout == Layout::kRowMajor && spec.dtype == DType::kF32, "takes row-major floats");
-  const Shape& q = x[2].shape;
-  require(q.rank() == 2 && x[0].shape == Shape{q[0], q[1], 3} && x[1].shape == x[0].shape,
-          "takes (B, K, 3) twice and (B, K), not " + x[0].shape.text() + ", " + x[1].shape.text() + " and " +
-              q.text());
+  const Shape& a = x[0].shape;
+  require(a.rank() == 3 && x[1].shape == a && x[2].shape == Shape{a[0], a[1]},
+          "takes (B, K, D) twice and (B, K), not " + a.text() + ", " + x[1].shape.text() + " and " +
+              x[2].shape.text());
   return {row_major({1})};
 }
 
@@ -35,7 +36,7 @@ Needs LocationLoss::needs(std::span<const TensorSpec> x, const Caps&) const {
 }
 
 void LocationLoss::record_forward(Recorder& recorder, const Forward& io) const {
-  const auto push = push_for(io.x[2].shape());
+  const auto push = push_for(io.x[0].shape());
   const TermSum sum(push.objects);
   recorder.dispatch_flat("location_loss.forward", push.objects,
                          {io.x[0].slice, io.x[1].slice, io.x[2].slice, sum.terms(io.scratch)}, push);
@@ -43,7 +44,7 @@ void LocationLoss::record_forward(Recorder& recorder, const Forward& io) const {
 }
 
 void LocationLoss::record_backward(Recorder& recorder, const Backward& io) const {
-  auto push = push_for(io.x[2].shape());
+  auto push = push_for(io.x[0].shape());
   for (uint32_t i = 0; i < 3; ++i) {
     push.wants |= (io.wants(i) ? 1U : 0U) << i;
     push.accumulates |= io.accumulates(i) << i;
@@ -54,8 +55,8 @@ void LocationLoss::record_backward(Recorder& recorder, const Backward& io) const
                          push);
 }
 
-Value location_loss(Value aligned, Value location3, Value q) {
-  return aligned.graph().apply1(std::make_shared<LocationLoss>(), {aligned, location3, q});
+Value location_loss(Value aligned, Value seen, Value q) {
+  return aligned.graph().apply1(std::make_shared<LocationLoss>(), {aligned, seen, q});
 }
 
 }  // namespace vkopple

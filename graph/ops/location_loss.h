@@ -4,8 +4,8 @@
 
 namespace vkopple {
 
-/// Mean over the batch of Σ_k q_k ‖a_k − x_k‖², of shape (1) (§6): aligned a (B, K, 3), location3 x (B, K, 3),
-/// q (B, K).
+/// Mean over the batch of Σ_k q_k ‖a_k − x_k‖², of shape (1) (§6): aligned a and seen x (B, K, D), D being 3
+/// for locations and 9 for the entries of rotations; q (B, K).
 class LocationLoss : public Op {
  public:
   std::string_view name() const override { return "location_loss"; }
@@ -15,6 +15,6 @@ class LocationLoss : public Op {
   void record_backward(Recorder& recorder, const Backward& io) const override;
 };
 
-Value location_loss(Value aligned, Value location3, Value q);
+Value location_loss(Value aligned, Value seen, Value q);
 
 }  // namespace vkopple

@@ -14,7 +14,7 @@ RigidMotion sizes_of(const Shape& moved) {
 }
 
 MotionSlices motion_of(const Operand& m23) {
-  return {.location = {}, .velocity = {}, .omega = {}, .m23 = m23.slice};
+  return {.location = {}, .velocity = {}, .turn = {}, .m23 = m23.slice};
 }
 
 }  // namespace
@@ -33,12 +33,13 @@ Needs MoveBackground::needs(std::span<const TensorSpec>, const Caps&) const {
 }
 
 void MoveBackground::record_forward(Recorder& recorder, const Forward& io) const {
-  record_moved(recorder, sizes_of(io.y[0].shape()), io.x[0].slice, motion_of(io.x[1]), io.y[0].slice);
+  record_moved(recorder, sizes_of(io.y[0].shape()), Turns::kAngles, io.x[0].slice, motion_of(io.x[1]),
+               io.y[0].slice);
 }
 
 void MoveBackground::record_backward(Recorder& recorder, const Backward& io) const {
-  record_moved_dpoints(recorder, sizes_of(io.dy[0].shape()), motion_of(io.x[1]), io.dy[0].slice, io.dx[0].slice,
-                       io.accumulates(0) != 0);
+  record_moved_dpoints(recorder, sizes_of(io.dy[0].shape()), Turns::kAngles, motion_of(io.x[1]), io.dy[0].slice,
+                       io.dx[0].slice, io.accumulates(0) != 0);
 }
 
 Value move_background(Value points, Value m23) {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "graph/kernels/expect.h"
 #include "graph/kernels/rigid_motion.h"
 #include "graph/kernels/words.h"
@@ -12,10 +10,6 @@ namespace vkopple {
 namespace {
 
 enum Input : size_t { kPoints, kLocation, kVelocity, kOmega, kM23 };
-
-/// Pixels that one invocation sums at first, as long as that leaves the second one few enough.
-constexpr uint32_t kStripPixels = 64;
-constexpr uint32_t kMostStrips = 512;
 
 struct MotionPush {
   RigidMotion sizes;
@@ -30,10 +24,6 @@ struct MotionPush {
 
 RigidMotion sizes_of(const Shape& points, const Shape& omega) {
   return {.images = u32(points[0]), .slots = u32(omega[1]), .pixels = u32(points[2] * points[3])};
-}
-
-uint32_t strips_of(const RigidMotion& sizes) {
-  return std::min(kMostStrips, (sizes.pixels + kStripPixels - 1) / kStripPixels);
 }
 
 MotionSlices motion_of(std::span<const Operand> x) {
@@ -60,26 +50,26 @@ std::vector<TensorSpec> MovePixels::infer(std::span<const TensorSpec> x) const {
 
 Needs MovePixels::needs(std::span<const TensorSpec> x, const Caps&) const {
   const RigidMotion sizes = sizes_of(x[kPoints].shape, x[kOmega].shape);
-  return {.backward_scratch = uint64_t{16} * sizes.images * sizes.slots * strips_of(sizes),
+  return {.backward_scratch = uint64_t{16} * sizes.images * sizes.slots * motion_strips(sizes),
           .inputs_for_backward = 1U << kPoints | 1U << kLocation | 1U << kOmega | 1U << kM23,
           .outputs_for_backward = 0};
 }
 
 void MovePixels::record_forward(Recorder& recorder, const Forward& io) const {
-  record_moved(recorder, sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape()), io.x[kPoints].slice,
-               motion_of(io.x), io.y[0].slice);
+  record_moved(recorder, sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape()), Turns::kAngles,
+               io.x[kPoints].slice, motion_of(io.x), io.y[0].slice);
 }
 
 void MovePixels::record_backward(Recorder& recorder, const Backward& io) const {
   if (io.wants(kPoints))
-    record_moved_dpoints(recorder, sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape()), motion_of(io.x),
-                         io.dy[0].slice, io.dx[kPoints].slice, io.accumulates(kPoints) != 0);
+    record_moved_dpoints(recorder, sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape()), Turns::kAngles,
+                         motion_of(io.x), io.dy[0].slice, io.dx[kPoints].slice, io.accumulates(kPoints) != 0);
   if (io.wants(kLocation) || io.wants(kVelocity) || io.wants(kOmega)) record_motion_gradients(recorder, io);
 }
 
 void MovePixels::record_motion_gradients(Recorder& recorder, const Backward& io) const {
   const RigidMotion sizes = sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape());
-  const uint32_t strips = strips_of(sizes);
+  const uint32_t strips = motion_strips(sizes);
   const MotionPush push{.sizes = sizes,
                         .strips = strips,
                         .want_location = io.wants(kLocation) ? 1U : 0U,

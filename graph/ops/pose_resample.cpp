@@ -12,7 +12,7 @@ struct PoseResamplePush {
   uint32_t count;
   uint32_t slots;
   uint32_t bins;
-  uint32_t matrices;
+  uint32_t rows;
   uint32_t transposed;
   uint32_t accumulate;
 };
@@ -21,7 +21,7 @@ PoseResamplePush push_of(const Operand& pose, const Operand& table) {
   return {.count = words(pose),
           .slots = u32(pose.shape()[1]),
           .bins = u32(pose.shape()[2]),
-          .matrices = u32(table.shape()[0]),
+          .rows = u32(table.shape()[0]),
           .transposed = 0,
           .accumulate = 0};
 }
@@ -31,13 +31,12 @@ PoseResamplePush push_of(const Operand& pose, const Operand& table) {
 std::vector<TensorSpec> PoseResample::infer(std::span<const TensorSpec> x) const {
   require(x.size() == 3 && x[0].layout == Layout::kRowMajor && x[0].dtype == DType::kF32 &&
               x[1].layout == Layout::kRowMajor && x[1].dtype == DType::kF32 && x[2].dtype == DType::kU32,
-          "takes log yaw and matrices, row-major floats, and indices, unsigned integers");
+          "takes log yaw and rows, row-major floats, and indices, unsigned integers");
   const Shape& pose = x[0].shape;
   const Shape& table = x[1].shape;
-  require(pose.rank() == 3 && table.rank() == 3 && table[1] == pose[2] && table[2] == pose[2] &&
-              x[2].shape == Shape({pose[0]}),
-          fmt::format("takes log yaw (B, K, b), matrices (A, b, b) and indices (B), not {}, {} and {}",
-                      pose.text(), table.text(), x[2].shape.text()));
+  require(pose.rank() == 3 && table.rank() == 2 && table[1] == pose[2] && x[2].shape == Shape({pose[0]}),
+          fmt::format("takes log yaw (B, K, b), rows (A, b) and indices (B), not {}, {} and {}", pose.text(),
+                      table.text(), x[2].shape.text()));
   return {x[0]};
 }
 

@@ -4,10 +4,10 @@
 
 namespace vkopple {
 
-/// Distributions over yaw as seen after a turn of the camera (docs/model.md §4): log p (B, K, b), matrices
-/// (A, b, b), constant, and which of them belongs to each entry of the batch (B), whole numbers below A (larger
-/// ones count as A − 1) → log-softmax(T[index] log p), (B, K, b). The matrices' entries alternate and cancel,
-/// so the products are summed with twice the precision.
+/// Distributions over yaw as seen after a turn of the camera (docs/model.md §4): log p (B, K, b), first rows
+/// (A, b) of circulant matrices T[m, n] = row[(n − m) mod b], constant, and which of them belongs to each entry
+/// of the batch (B), whole numbers below A (larger ones count as A − 1) → log-softmax(T log p), (B, K, b). The
+/// rows' entries alternate and cancel, so the products are summed with twice the precision.
 class PoseResample : public Op {
  public:
   std::string_view name() const override { return "pose_resample"; }

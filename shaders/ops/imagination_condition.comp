@@ -3,25 +3,28 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 
-// Rows (ego 3, velocity x y, direction 2), the background's (ego, 0, 0, 1, 0). One invocation takes one row.
+// Rows (ego E, velocity T, turn T), T 2 or 3; the background's are (ego, 0, ..., 0) but that a direction of no turn in the plane, of T = 2,
+// is (1, 0). One invocation takes one row.
 layout(push_constant) uniform Push {
   uint rows;   // B (K + 1)
   uint slots;  // K
+  uint ego_numbers;   // E
+  uint turn_numbers;  // T
   uint want_velocity;
-  uint want_direction;
+  uint want_turn;
   uint accumulate_velocity;
-  uint accumulate_direction;
+  uint accumulate_turn;
 } p;
 
 #ifdef FORWARD
 READ1(0, ego)
 READ1(1, velocity)
-READ1(2, direction)
+READ1(2, turn)
 WRITE1(3, condition)
 #else
 READ1(0, dcondition)
 WRITE1(1, dvelocity)
-WRITE1(2, ddirection)
+WRITE1(2, dturn)
 #endif
 
 void main() {
@@ -30,20 +33,23 @@ void main() {
   uint image = row / (p.slots + 1);
   uint slot = row - image * (p.slots + 1);
   uint object = image * p.slots + slot;  // of (B, K)
+  uint first = row * (p.ego_numbers + 2 * p.turn_numbers);
+  uint moves = first + p.ego_numbers;
+  uint turns = moves + p.turn_numbers;
 #ifdef FORWARD
-  vec4 motion = vec4(0, 0, 1, 0);
-  if (slot < p.slots)
-    motion = vec4(load1(velocity, object * 3), load1(velocity, object * 3 + 1), load1(direction, object * 2),
-                  load1(direction, object * 2 + 1));
-  for (uint c = 0; c < 3; ++c) condition[row * 7 + c] = load1(ego, image * 3 + c);
-  for (uint c = 0; c < 4; ++c) condition[row * 7 + 3 + c] = motion[c];
+  bool still = slot == p.slots;
+  for (uint c = 0; c < p.ego_numbers; ++c) condition[first + c] = load1(ego, image * p.ego_numbers + c);
+  for (uint c = 0; c < p.turn_numbers; ++c) {
+    condition[moves + c] = still ? 0.0 : load1(velocity, object * 3 + c);
+    condition[turns + c] = still ? (c == 0 && p.turn_numbers == 2 ? 1.0 : 0.0) : load1(turn, object * p.turn_numbers + c);
+  }
 #else
   if (slot == p.slots) return;
   for (uint c = 0; c < 3; ++c)
     if (p.want_velocity != 0)
-      add1(dvelocity, object * 3 + c, c < 2 ? load1(dcondition, row * 7 + 3 + c) : 0.0, p.accumulate_velocity)
-  for (uint c = 0; c < 2; ++c)
-    if (p.want_direction != 0)
-      add1(ddirection, object * 2 + c, load1(dcondition, row * 7 + 5 + c), p.accumulate_direction)
+      add1(dvelocity, object * 3 + c, c < p.turn_numbers ? load1(dcondition, moves + c) : 0.0, p.accumulate_velocity)
+  for (uint c = 0; c < p.turn_numbers; ++c)
+    if (p.want_turn != 0)
+      add1(dturn, object * p.turn_numbers + c, load1(dcondition, turns + c), p.accumulate_turn)
 #endif
 }

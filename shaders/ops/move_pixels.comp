@@ -1,12 +1,20 @@
-// variants: forward points
+// variants: forward points forward_turns points_turns
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "planes.glsl"
 #include "precise.glsl"
+#include "turns.glsl"
 
-// moved (B, K+1, 3, H, W) = M [Rz(omega)(P - X) + X + v], and M P for the background, which is last. `forward`: one invocation takes
-// every strips-th pixel of one hypothesis. `points`: the gradient of P, one invocation the same of an image.
+// moved (B, K+1, 3, H, W) = M [R (P - X) + X + v], and M P for the background, which is last; R = Rz(omega) or, in `_turns`, a matrix.
+// `forward`: one invocation takes every strips-th pixel of one hypothesis. `points`: the gradient of P, one invocation the same of an
+// image.
+#if defined(FORWARD_TURNS) || defined(POINTS_TURNS)
+#define TURNS
+#endif
+#if defined(FORWARD) || defined(FORWARD_TURNS)
+#define MOVES
+#endif
 layout(push_constant) uniform Push {
   uint images;
   uint slots;  // K
@@ -17,9 +25,13 @@ layout(push_constant) uniform Push {
 
 READ1(0, location)
 READ1(1, velocity)
+#ifdef TURNS
+READ1(2, turns)
+#else
 READ1(2, omega)
+#endif
 READ1(3, m23)
-#ifdef FORWARD
+#ifdef MOVES
 READ1(4, points)
 WRITE1(5, moved)
 #else
@@ -29,7 +41,7 @@ WRITE1(5, dpoints)
 
 #include "rigid_motion.glsl"
 
-#ifdef FORWARD
+#ifdef MOVES
 void main() {
   uint i = flat_index();
   uint hypothesis = i / p.strips;  // of (B, K + 1)

@@ -3,12 +3,13 @@
 #include "access.glsl"
 #include "precise.glsl"
 
-// y = T x or T' x with the matrix T that the batch's entry names. One invocation an element of y.
+// y = T x or T' x with the circulant matrix T[m, n] = row[(n - m) mod bins] whose row the batch's entry names. One invocation an
+// element of y.
 layout(push_constant) uniform Push {
   uint count;
   uint slots;
   uint bins;
-  uint matrices;
+  uint rows;
   uint transposed;
   uint accumulate;
 } p;
@@ -23,10 +24,11 @@ void main() {
   if (i >= p.count) return;
   uint row = i / p.bins;
   uint m = i - row * p.bins;
-  uint matrix = min(index[row / p.slots], p.matrices - 1u) * p.bins * p.bins;
-  uint at = matrix + (p.transposed != 0u ? m : m * p.bins);
-  uint step_ = p.transposed != 0u ? p.bins : 1u;
+  uint first = min(index[row / p.slots], p.rows - 1u) * p.bins;
   PreciseSum sum = PreciseSum(0.0, 0.0);
-  for (uint n = 0u; n < p.bins; ++n) add_product_to(sum, load1(table, at + n * step_), load1(x, row * p.bins + n));
+  for (uint n = 0u; n < p.bins; ++n) {
+    uint forth = p.transposed != 0u ? m + p.bins - n : n + p.bins - m;
+    add_product_to(sum, load1(table, first + (forth < p.bins ? forth : forth - p.bins)), load1(x, row * p.bins + n));
+  }
   add1(y, i, value_of(sum), p.accumulate)
 }

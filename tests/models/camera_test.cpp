@@ -54,6 +54,28 @@ TEST(CameraTest, TurnsAreWrapped) {
   EXPECT_NEAR(ego_motion({0, 0, 0, -3, 0, 0}, {0, 0, 0, 3, 0, 0})[2], 6 - 2 * kPi, 1e-12);
 }
 
+TEST(CameraTest, TurnsInSpaceAreVectorsInTheFirstCamerasFrame) {
+  // Turned left by a quarter, the world's -x is ahead; then b looks up by 0.3 and stands one ahead and two
+  // higher.
+  const auto m = spatial_ego_motion({0, 0, 1, kPi / 2, 0, 0}, {-1, 0, 3, kPi / 2, 0.3, 0});
+  expect_near({m[0], m[1], m[2]}, {0, 1, 2});
+  expect_near({m[3], m[4], m[5]}, {0.3, 0, 0});
+  // No turn, one of hardly anything, and one by more than half a turn, which is a shorter one the other way.
+  const auto yaw = [](double angle) { return spatial_ego_motion({}, {0, 0, 0, angle, 0, 0})[5]; };
+  EXPECT_EQ(yaw(0), 0);
+  EXPECT_NEAR(yaw(1e-9), 1e-9, 1e-15);
+  EXPECT_NEAR(yaw(4), 4 - 2 * kPi, 1e-12);
+}
+
+TEST(CameraTest, EulerAnglesMakeTheirRotation) {
+  for (const CameraPose& pose :
+       {CameraPose{0, 0, 0, 0.4, -0.7, 1.2}, CameraPose{0, 0, 0, -3, 1.4, -2.5}, CameraPose{}}) {
+    const Matrix4 m = camera_to_world(pose);
+    expect_near(euler_angles({m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}),
+                {pose[3], pose[4], pose[5]});
+  }
+}
+
 TEST(CameraTest, ResamplingIndicesAreWholeDegrees) {
   const auto degrees = [](double d) { return resampling_index(d * kPi / 180); };
   EXPECT_EQ(degrees(0), 180U);

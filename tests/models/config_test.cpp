@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
 #include "models/presets.h"
@@ -36,7 +37,8 @@ TEST(Config, DefaultsAreThePublishedModel) {
 }
 
 TEST(Config, EveryPresetRoundTripsExactly) {
-  EXPECT_EQ(preset_names(), (std::vector<std::string_view>{"full", "small", "tiny"}));
+  EXPECT_EQ(preset_names(), (std::vector<std::string_view>{"full", "more-terms", "no-regularisers", "no-warp",
+                                                           "relaxed", "rotation-3d", "small", "tiny"}));
   for (const std::string_view name : preset_names()) {
     const Config c = Config::load(std::string(name));
     EXPECT_EQ(Config::parse(c.to_json(), "again"), c) << c.to_json();
@@ -94,6 +96,58 @@ TEST(Config, SmallLearnsDepthFirst) {
   EXPECT_EQ(c.stages()[1].learning_rate, c.training.learning_rate);
 }
 
+TEST(Config, VariantsAreSmallButForTheirValues) {
+  const Config small = Config::load("small");
+  const auto expect = [&](const std::string& preset, const std::function<void(Config&)>& change) {
+    Config expected = small;
+    change(expected);
+    EXPECT_EQ(Config::load(preset), expected) << Config::load(preset).to_json();
+  };
+  expect("no-regularisers", [](Config& c) { c.model.reg = 0; });
+  expect("rotation-3d", [](Config& c) { c.model.orientation = Orientation::kEuler; });
+  expect("relaxed", [](Config& c) {
+    c.model.relaxed = true;
+    c.training.stages[1].networks.push_back(Network::kMotion);
+  });
+  // Learning depth alone is learning by the warp.
+  expect("no-warp", [](Config& c) {
+    c.model.warp = false;
+    c.training.stages.clear();
+  });
+  expect("more-terms", [](Config& c) {
+    c.model.pose_loss = PoseLossKind::kJs;
+    c.model.smoothness = 0.01;
+    c.model.pose_contrast = 0.1;
+  });
+}
+
+TEST(Config, ABaseIsFilledIn) {
+  Config expected = Config::load("small");
+  expected.model.slots = 5;
+  expected.training.stages[0].steps = 7;
+  const char* text = R"({"base": "small", "model": {"slots": 5}})";
+  EXPECT_EQ(Config::parse(text, "x", std::vector<std::string>{"training.stages[0].steps=7"}), expected);
+  EXPECT_EQ(Config::parse(R"({"base": "relaxed", "model": {"relaxed": false}})", "x"), Config::load("small"));
+  EXPECT_EQ(refusal(R"({"base": "larger"})"),
+            "run.json: base is \"larger\"; give a preset, one of full, more-terms, no-regularisers, no-warp, "
+            "relaxed, "
+            "rotation-3d, small, tiny");
+  EXPECT_NE(refusal(R"({"base": 3})").find("base is 3"), std::string::npos);
+  EXPECT_NE(refusal(R"({"base": "small", "model": 3})").find("model is 3"), std::string::npos);
+}
+
+TEST(Config, MotionIsANetworkOfTheRelaxedModel) {
+  EXPECT_EQ(Config::parse(R"({"model": {"relaxed": true}})", "x").stages()[0].networks.back(),
+            Network::kMotion);
+  const Config c = Config::parse(
+      R"({"model": {"relaxed": true}, "training": {"clip": {"motion": 3}, "stages": [{"networks": ["motion"]}]}})",
+      "x");
+  EXPECT_EQ(c.stages()[0].networks, std::vector<Network>{Network::kMotion});
+  EXPECT_EQ(c.training.clip.motion, 3);
+  EXPECT_NE(refusal(R"({"training": {"stages": [{"networks": ["motion"]}]}})").find("model.relaxed"),
+            std::string::npos);
+}
+
 TEST(Config, WithoutStagesOneTrainsEverything) {
   const Config c =
       Config::parse(R"({"training": {"batch": 3, "learning_rate": 0.5}, "rooms": {"objects": 2}})", "x");
@@ -122,9 +176,9 @@ TEST(Config, RefusalsNameFileKeyAndRange) {
   EXPECT_EQ(refusal(R"({"model": {"height": 0}})"),
             "run.json: model.height is 0; give a whole number from 4 to 4096");
   EXPECT_EQ(refusal(R"({"model": {"slots": "3"}})"),
-            "run.json: model.slots is \"3\"; give a whole number from 1 to 32");
+            "run.json: model.slots is \"3\"; give a whole number from 1 to 254");
   EXPECT_EQ(refusal(R"({"model": {"slots": 2.5}})"),
-            "run.json: model.slots is 2.5; give a whole number from 1 to 32");
+            "run.json: model.slots is 2.5; give a whole number from 1 to 254");
   EXPECT_EQ(refusal(R"({"model": {"pose_loss": "l2"}})"),
             "run.json: model.pose_loss is \"l2\"; give one of kl, js");
   EXPECT_EQ(refusal(R"({"training": {"clip": {"depth": -1}}})"),
@@ -140,7 +194,10 @@ TEST(Config, RefusalsNameFileKeyAndRange) {
 }
 
 TEST(Config, RefusesWhatCannotBe) {
-  EXPECT_NE(refusal(R"({"model": {"relaxed": true}})").find("not built yet"), std::string::npos);
+  EXPECT_NE(refusal(R"({"model": {"relaxed": true, "orientation": "euler"}})").find("model.relaxed"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"model": {"pose_contrast": 1, "orientation": "euler"}})").find("model.pose_contrast"),
+            std::string::npos);
   EXPECT_NE(refusal(R"({"model": {"code": 4, "identity": 5}})").find("model.identity"), std::string::npos);
   EXPECT_NE(refusal(R"({"model": {"slots": 18446744073709551615}})").find("model.slots"), std::string::npos);
   EXPECT_NE(refusal(R"({"model": {"warp": 1}})").find("true or false"), std::string::npos);
@@ -173,7 +230,10 @@ TEST(Config, LoadTellsPresetsFromFiles) {
     Config::load("smal");
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(), "smal: no such file, nor a preset; the presets are full, small, tiny");
+    EXPECT_STREQ(
+        error.what(),
+        "smal: no such file, nor a preset; the presets are full, more-terms, no-regularisers, no-warp, "
+        "relaxed, rotation-3d, small, tiny");
   }
   const std::string path = testing::TempDir() + "vkopple_config_test.json";
   std::ofstream(path) << R"({"model": {"height": 48}})";

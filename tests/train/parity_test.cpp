@@ -29,6 +29,12 @@ TEST(ParityTest, Rigid) { expect_parity(test_device(), "rigid.safetensors"); }
 
 TEST(ParityTest, WithoutWarpingAndJensenShannon) { expect_parity(test_device(), "nowarp_js.safetensors"); }
 
+TEST(ParityTest, Relaxed) { expect_parity(test_device(), "relaxed.safetensors"); }
+
+TEST(ParityTest, EulerAngles) { expect_parity(test_device(), "euler.safetensors"); }
+
+TEST(ParityTest, OddSizesAndMoreTerms) { expect_parity(test_device(), "odd.safetensors"); }
+
 // Training's own sums are held to the limits in all but gradients; convolutions that keep what they round off
 // are held to every limit.
 TEST(ParityTest, TrainWithPlainSums) { expect_parity(test_device(), "train.safetensors", kKinks); }

@@ -76,14 +76,14 @@ void print_row(const Summary& s) {
   for (const auto& failure : s.failures) fmt::print("    {}\n", failure);
 }
 
-void print_row(std::string_view frames, const DirectionalCheck& c) {
-  fmt::print("model, statistics of {:<6} {:<11} along {:<9} derivative {:>12.6g}, differences {:>12.6g}   {}\n",
-             frames, c.group, c.direction, c.analytic, c.numeric, c.passed() ? "ok" : "FAILED");
+void print_row(std::string_view model, const DirectionalCheck& c) {
+  fmt::print("model, {:<23} {:<11} along {:<9} derivative {:>12.6g}, differences {:>12.6g}   {}\n", model,
+             c.group, c.direction, c.analytic, c.numeric, c.passed() ? "ok" : "FAILED");
 }
 
-nlohmann::ordered_json to_json(std::string_view frames, const DirectionalCheck& c) {
-  return {{"statistics_frames", frames}, {"network", c.group},      {"direction", c.direction},
-          {"derivative", c.analytic},    {"difference", c.numeric}, {"limit", c.limit},
+nlohmann::ordered_json to_json(std::string_view model, const DirectionalCheck& c) {
+  return {{"model", model},           {"network", c.group},      {"direction", c.direction},
+          {"derivative", c.analytic}, {"difference", c.numeric}, {"limit", c.limit},
           {"passed", c.passed()}};
 }
 
@@ -116,14 +116,13 @@ void run(const Options& options) {
       print_row(summary);
   }
   if (options.all) {
-    for (const StatisticsFrames frames : {StatisticsFrames::kAll, StatisticsFrames::kSecond}) {
-      const std::string_view name = kStatisticsFramesNames[static_cast<size_t>(frames)];
-      for (const DirectionalCheck& c : check_model(device, frames)) {
+    for (const CheckedModel& model : checked_models()) {
+      for (const DirectionalCheck& c : check_model(device, model.config)) {
         failed = failed || !c.passed();
         if (options.json)
-          out["model"].push_back(to_json(name, c));
+          out["model"].push_back(to_json(model.name, c));
         else
-          print_row(name, c);
+          print_row(model.name, c);
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "models/camera.h"
 #include "models/perception.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
@@ -102,13 +103,19 @@ class Inference {
     const auto [nearest, farthest] = std::minmax_element(seen.depth.pixels.begin(), seen.depth.pixels.end());
     fmt::print("{}: depth from {:.2f} to {:.2f}\n", name, *nearest, *farthest);
     if (!seen.objects.empty())
-      fmt::print("  slot   share      x      y      z  angle  distance    yaw (probability)\n");
+      fmt::print("  slot   share      x      y      z  angle  distance    yaw {}\n",
+                 seen.objects[0].rotation ? " pitch   roll" : "(probability)");
     for (size_t k = 0; k < seen.objects.size(); ++k) {
       const SeenObject& o = seen.objects[k];
-      fmt::print("  {:>4} {:>6.1f}% {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>9.2f} {:>6.2f} ({:.2f})\n", k,
-                 100 * o.share, o.location[0], o.location[1], o.location[2], o.angle, o.distance, o.yaw,
-                 o.yaw_probability);
+      fmt::print("  {:>4} {:>6.1f}% {:>6.2f} {:>6.2f} {:>6.2f} {:>6.2f} {:>9.2f} {}\n", k, 100 * o.share,
+                 o.location[0], o.location[1], o.location[2], o.angle, o.distance, orientation_text(o));
     }
+  }
+
+  static std::string orientation_text(const SeenObject& o) {
+    if (!o.rotation) return fmt::format("{:>6.2f} ({:.2f})", o.yaw, o.yaw_probability);
+    const auto angles = euler_angles(*o.rotation);
+    return fmt::format("{:>6.2f} {:>6.2f} {:>6.2f}", angles[0], angles[1], angles[2]);
   }
 
   const Options& options_;

@@ -107,7 +107,7 @@ void run(const Options& o) {
   const ModelConfig& config = model.config.model;
   const auto poses = read_frame_poses(o.poses, {o.frames[0], o.frames[1], o.frames[2]}, config.fov);
   const Frames frames = read_frames(o, config);
-  warn_if_untrained(model, {Network::kDepth, Network::kObject, Network::kImagination});
+  warn_if_untrained(model, networks_of(model.config.model));
 
   Predictor predictor(device, config, model.store->groups());
   const PredictedFrame predicted = predictor.predict(frames.first, frames.second, poses);

@@ -2,9 +2,11 @@
 
     python make_fixtures.py OUT.safetensors [--seed 0] [--batch 6] [--mode train|eval] [--set height=32 ...]
 
-Those in tests/fixtures, rigid and train:
+Those in tests/fixtures, rigid, train, euler and odd:
     python make_fixtures.py OUT --seed 20 --batch 4 --mode eval --set height=32 width=32 depth_width=2 object_width=4 imagine_width=1 lstm=16
     python make_fixtures.py OUT --seed 17 --batch 8 --mode train --set height=32 width=32 depth_width=2 object_width=4 imagine_width=2 lstm=16
+    python make_fixtures.py OUT --seed 20 --batch 3 --mode eval --tilt 0.1 --set height=22 width=36 fov=1.3 slots=2 orientation='"euler"' depth_width=1 object_width=2 imagine_width=1 lstm=8
+    python make_fixtures.py OUT --seed 22 --batch 3 --mode eval --set height=36 width=22 fov=1.3 slots=4 bins=72 smoothness=0.1 pose_contrast=0.5 depth_width=1 object_width=2 imagine_width=1 lstm=8
 
 All values are computed in float64 and stored as float32. `noise/<tensor>` is the relative L2 error that PyTorch's own
 float32 makes on that tensor: an implementation is right when its error is within a small factor of it
@@ -87,12 +89,16 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--batch", type=int, default=6)
     parser.add_argument("--mode", choices=("train", "eval"), default="train")
+    parser.add_argument("--tilt", type=float, default=0, help="of the camera, beyond what the images show: the deviation of "
+                        "pitch and roll in radians")
     parser.add_argument("--set", nargs="*", default=[], metavar="FIELD=VALUE", help="of Config")
     a = parser.parse_args()
     fields = {k: json.loads(v) for k, v in (f.split("=") for f in a.set)}
     cfg = dataclasses.replace(opple.Config(dropout=(0, 0, 0)), **fields)
     g = torch.Generator().manual_seed(a.seed)
     images, poses, depth, label = rooms.triplets(a.batch, cfg.height, cfg.width, a.seed)
+    for pose in poses if a.tilt else []:
+        pose[:, 4:] += a.tilt * torch.randn(a.batch, 2, generator=g, dtype=pose.dtype)
     permutation = torch.randperm(a.batch, generator=g)
     model = opple.Opple(cfg).double()
     scramble(model, g)

@@ -31,11 +31,18 @@ class Config:
     max_height: float = 5.0
     beta: float = 1.0
     reg: float = 1.0
+    smoothness: float = 0.0    # factors of two more terms
+    pose_contrast: float = 0.0
     warp: bool = True          # False: the no-warping ablation
     relaxed: bool = False      # True: learned motion
+    orientation: str = "yaw"   # or "euler": three angles for each object
     pose_loss: str = "kl"      # or "js"
     statistics_frames: str = "all"   # or "second": frames 1 and 3 pass neither depth network nor mask decoder
     dropout: tuple = (0.05, 0.05, 0.0005)   # depth, object, imagination network
+
+    @property
+    def orientation_numbers(self):
+        return 6 if self.orientation == "euler" else self.bins
 
 
 PRESETS = {
@@ -168,12 +175,12 @@ class ObjectNet(nn.Module):
             h, v = (h + 1) // 2, (v + 1) // 2
         features = c[7] * h * v
         self.rnn = nn.LSTM(features, cfg.lstm, 1, batch_first=True)
-        self.lin = nn.Sequential(nn.LeakyReLU(SLOPE), nn.Linear(cfg.lstm, 3 + cfg.bins + cfg.code))
+        self.lin = nn.Sequential(nn.LeakyReLU(SLOPE), nn.Linear(cfg.lstm, 3 + cfg.orientation_numbers + cfg.code))
         self.up1_att_lin = nn.Sequential(nn.Linear(cfg.code, features), nn.LeakyReLU(SLOPE))
         self.outc_att = OutConv(w, 1)
 
     def forward(self, image, masks=True):
-        """-> raw slot vectors (B, K, 3 + bins + code), mask logits (B, K, H, W) or None"""
+        """-> raw slot vectors (B, K, 3 + orientation + code), mask logits (B, K, H, W) or None"""
         skips = [self.inc(image)]
         for i in range(7):
             x = self.assp(skips[-1]) if i == 3 else skips[-1]
@@ -185,7 +192,7 @@ class ObjectNet(nn.Module):
             return raw, None
         logits = []
         for k in range(self.cfg.slots):
-            x = self.up1_att_lin(raw[:, k, 3 + self.cfg.bins:]).reshape(top.shape)
+            x = self.up1_att_lin(raw[:, k, 3 + self.cfg.orientation_numbers:]).reshape(top.shape)
             for i in range(7):
                 x = getattr(self, f"up{i}_att")(x, skips[6 - i])
             logits.append(self.outc_att(x))
@@ -205,7 +212,7 @@ class ImaginationNet(nn.Module):
         h, v = cfg.height, cfg.width
         for _ in range(6):
             h, v = (h + 1) // 2, (v + 1) // 2
-        self.linear = nn.Linear(7, c[6] * h * v)
+        self.linear = nn.Linear(12 if cfg.orientation == "euler" else 7, c[6] * h * v)
         self.outc = OutConv(c[0], 5)
 
     def forward(self, x, condition):
@@ -221,15 +228,45 @@ class ImaginationNet(nn.Module):
 
 # ---- geometry -------------------------------------------------------------------------------------------
 
-def camera_to_world(pose):
-    """pose (B, 6): x, y, z, yaw, pitch, roll -> (B, 4, 4) with R = Rz(yaw) Rx(pitch) Ry(roll)"""
-    t, (yaw, pitch, roll) = pose[:, :3], pose[:, 3:].unbind(1)
-    o, l = torch.zeros_like(yaw), torch.ones_like(yaw)
+def euler(cosine, sine):
+    """(..., 3) of yaw, pitch and roll -> (..., 3, 3): Rz(yaw) Rx(pitch) Ry(roll)"""
+    c, s = cosine.unbind(-1), sine.unbind(-1)
+    o, l = torch.zeros_like(c[0]), torch.ones_like(c[0])
     mat = lambda rows: torch.stack([torch.stack(r, -1) for r in rows], -2)
-    rz = mat([[yaw.cos(), -yaw.sin(), o], [yaw.sin(), yaw.cos(), o], [o, o, l]])
-    rx = mat([[l, o, o], [o, pitch.cos(), -pitch.sin()], [o, pitch.sin(), pitch.cos()]])
-    ry = mat([[roll.cos(), o, roll.sin()], [o, l, o], [-roll.sin(), o, roll.cos()]])
-    top = torch.cat([rz @ rx @ ry, t[:, :, None]], 2)
+    rz = mat([[c[0], -s[0], o], [s[0], c[0], o], [o, o, l]])
+    rx = mat([[l, o, o], [o, c[1], -s[1]], [o, s[1], c[1]]])
+    ry = mat([[c[2], o, s[2]], [o, l, o], [-s[2], o, c[2]]])
+    return rz @ rx @ ry
+
+
+def nearest_rotation(m):
+    """the rotation R with the largest trace of R^T M, by Newton's iteration for the polar decomposition, whose gradient is
+    exact where that of singular vectors is not (equal singular values)"""
+    if not (torch.linalg.det(m) > 0).all():
+        raise ValueError("a mean of rotations has no positive determinant: its nearest rotation takes singular vectors")
+    for _ in range(30):
+        m = (m + torch.linalg.inv(m).transpose(-1, -2)) / 2
+    return m
+
+
+def turn_vector(r):
+    """axis of a rotation, as long as its angle, which must be neither 0 nor pi"""
+    sine = torch.stack([r[..., 2, 1] - r[..., 1, 2], r[..., 0, 2] - r[..., 2, 0], r[..., 1, 0] - r[..., 0, 1]], -1) / 2
+    size = sine.norm(dim=-1, keepdim=True)
+    return sine / size * torch.atan2(size, (r.diagonal(dim1=-2, dim2=-1).sum(-1, keepdim=True) - 1) / 2)
+
+
+def turn_matrix(v):
+    """the other way round"""
+    o = torch.zeros_like(v[..., 0])
+    x, y, z = v.unbind(-1)
+    return torch.matrix_exp(torch.stack([torch.stack(r, -1) for r in [[o, -z, y], [z, o, -x], [-y, x, o]]], -2))
+
+
+def camera_to_world(pose):
+    """pose (B, 6): x, y, z, yaw, pitch, roll -> (B, 4, 4)"""
+    angles = pose[:, 3:]
+    top = torch.cat([euler(angles.cos(), angles.sin()), pose[:, :3, None]], 2)
     return torch.cat([top, torch.tensor([0., 0, 0, 1], dtype=pose.dtype).expand(len(pose), 1, 4)], 1)
 
 
@@ -244,6 +281,12 @@ def ego_motion(pose_a, pose_b):
     d = pose_b[:, :2] - pose_a[:, :2]
     omega = torch.remainder(pose_b[:, 3] - pose_a[:, 3] + math.pi, 2 * math.pi) - math.pi
     return torch.stack([c * d[:, 0] + s * d[:, 1], -s * d[:, 0] + c * d[:, 1], omega], 1)
+
+
+def spatial_ego_motion(pose_a, pose_b):
+    """translation and turn vector of the camera, in camera a's frame (B, 6)"""
+    step = torch.linalg.inv(camera_to_world(pose_a)) @ camera_to_world(pose_b)
+    return torch.cat([step[:, :3, 3], turn_vector(step[:, :3, :3])], 1)
 
 
 def pixel_grid(cfg, dtype):
@@ -273,12 +316,16 @@ def project(cfg, p):
 # ---- objects --------------------------------------------------------------------------------------------
 
 def decode(cfg, raw):
-    """raw slot vectors -> location (B, K, 3), log pose (B, K, bins), code (B, K, code)"""
+    """raw slot vectors -> dict of location (B, K, 3), log_pose (B, K, bins) or rotation (B, K, 3, 3), code (B, K, code)"""
     theta = cfg.fov / 2 * 1.2 * (2 * torch.sigmoid(raw[..., 0]) - 1)
     rho = cfg.max_depth * torch.sigmoid(raw[..., 1])
     z = cfg.max_height * (2 * torch.sigmoid(raw[..., 2]) - 1)
     location = torch.stack([rho * theta.sin(), rho * theta.cos(), z], -1)
-    return location, F.log_softmax(raw[..., 3:3 + cfg.bins], -1), raw[..., 3 + cfg.bins:]
+    numbers, code = raw[..., 3:3 + cfg.orientation_numbers], raw[..., 3 + cfg.orientation_numbers:]
+    if cfg.orientation == "euler":
+        pairs = F.normalize(numbers.unflatten(-1, (3, 2)), dim=-1)
+        return dict(location=location, rotation=euler(pairs[..., 0], pairs[..., 1]), code=code)
+    return dict(location=location, log_pose=F.log_softmax(numbers, -1), code=code)
 
 
 def match(cfg, code_a, code_b):
@@ -290,9 +337,13 @@ def match(cfg, code_a, code_b):
     return F.log_softmax(s[:, :-1, :-1], 2), q
 
 
-def align(log_w, location, log_pose):
-    pose = torch.logsumexp(log_w[..., None] + log_pose[:, None], 2)
-    return log_w.exp() @ location, F.log_softmax(pose, -1)
+def align(log_w, seen):
+    """location and orientation of `seen` in the order of log_w's rows"""
+    aligned = dict(location=log_w.exp() @ seen["location"])
+    if "rotation" in seen:
+        return dict(aligned, rotation=torch.einsum("bkl,blij->bkij", log_w.exp(), seen["rotation"]))
+    pose = torch.logsumexp(log_w[..., None] + seen["log_pose"][:, None], 2)
+    return dict(aligned, log_pose=F.log_softmax(pose, -1))
 
 
 class PoseResampling(nn.Module):
@@ -398,8 +449,7 @@ class Opple(nn.Module):
 
     def objects(self, image, masks=True):
         raw, logits = self.object_net(image, masks)
-        location, log_pose, code = decode(self.cfg, raw)
-        state = dict(location=location, log_pose=log_pose, code=code)
+        state = decode(self.cfg, raw)
         return dict(state, masks=F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1), mask_logits=logits) if masks else state
 
     def forward(self, images, poses):
@@ -413,42 +463,57 @@ class Opple(nn.Module):
         ego12, ego23 = ego_motion(poses[0], poses[1]), ego_motion(poses[1], poses[2])
 
         log_w12, q12 = match(cfg, o1["code"], o2["code"])
-        location1, log_pose1 = align(log_w12, o1["location"], o1["log_pose"])
+        o1_aligned = align(log_w12, o1)
+        spatial = cfg.orientation == "euler"
         apply = lambda m, x: x @ m[:, :3, :3].transpose(1, 2) + m[:, None, :3, 3]
         carry = lambda m, ego, x: apply(m, x)
         if cfg.relaxed:
             carry = lambda m, ego, x: x + self.move_location(torch.cat([ego[:, None].expand(-1, x.shape[1], -1), x], 2))
-        velocity = (o2["location"] - carry(m12, ego12, location1)) * q12[..., None]
+        velocity = (o2["location"] - carry(m12, ego12, o1_aligned["location"])) * q12[..., None]
         location3 = carry(m23, ego23, o2["location"] + velocity)
 
-        seen1 = self.pose.resample(log_pose1, -ego12[:, 2])
-        log_g, direction = self.pose.rotation(seen1, o2["log_pose"])
-        omega = torch.atan2(direction[..., 1], direction[..., 0]) * (q12 + 1e-8)
-        log_pose3 = self.pose.resample(self.pose.rotate(o2["log_pose"], log_g), -ego23[:, 2])
-
         points2 = back_project(cfg, depth)
-        still = points2.new_tensor([0, 0, 0, 1, 0]).expand(len(depth), 1, 5)
-        motion = torch.cat([torch.cat([velocity, direction], 2), still], 1)              # (B, K+1, 5)
-        if cfg.relaxed:
+        if spatial:
+            turned = self.turn_in_space(m12, m23, o1_aligned["rotation"], o2["rotation"], q12)
+            ego = spatial_ego_motion(poses[1], poses[2])
+            motion = F.pad(torch.cat([velocity, turned["turn_vector"]], 2), (0, 0, 0, 1))    # (B, K+1, 6)
+        else:
+            turned = self.turn_in_the_plane(ego12, ego23, o1_aligned["log_pose"], o2["log_pose"], q12)
+            ego = ego23
+            still = points2.new_tensor([0, 0, 0, 1, 0]).expand(len(depth), 1, 5)
+            motion = torch.cat([torch.cat([velocity, turned["direction"]], 2), still], 1)    # (B, K+1, 5)
+        if spatial:
+            points3 = self.rigid_pixels(points2, m23, o2["location"], velocity, turn_matrix(turned["turn_vector"]))
+        elif cfg.relaxed:
             points3 = self.move_pixels(points2, ego23, o2["location"], location3, motion)
         else:
-            points3 = self.rigid_pixels(points2, m23, o2["location"], velocity, omega)
+            angles = F.pad(turned["omega"][..., None], (0, 2))
+            points3 = self.rigid_pixels(points2, m23, o2["location"], velocity, euler(angles.cos(), angles.sin()))
         warped, warped_depth, total = splat(cfg, images[1], points3, o2["masks"])
         share = 0.99 * total.clamp(0, 1) * (1.0 if cfg.warp else 0.0)
 
-        imagined, imagined_depth = self.imagine(images[1], depth, o2["masks"], ego23, motion)
+        imagined, imagined_depth = self.imagine(images[1], depth, o2["masks"], ego, motion)
         predicted = share[:, None] * warped + (1 - share[:, None]) * imagined
         predicted_depth = share * warped_depth + (1 - share) * imagined_depth
         return dict(o1=o1, o2=o2, o3=o3, depth=depth, points2=points2, points3=points3, q12=q12, velocity=velocity,
-                    omega=omega, direction=direction, location3=location3, log_pose3=log_pose3, warped=warped,
-                    warped_depth=warped_depth, share=share, imagined=imagined, imagined_depth=imagined_depth,
+                    location3=location3, **turned, warped=warped, warped_depth=warped_depth, share=share, imagined=imagined, imagined_depth=imagined_depth,
                     predicted=predicted, predicted_depth=predicted_depth)
 
-    def rigid_pixels(self, points, m23, location, velocity, omega):
-        c, s, o, l = omega.cos(), omega.sin(), torch.zeros_like(omega), torch.ones_like(omega)
-        rz = torch.stack([torch.stack([c, -s, o], -1), torch.stack([s, c, o], -1), torch.stack([o, o, l], -1)], -2)
+    def turn_in_the_plane(self, ego12, ego23, log_pose1, log_pose2, q12):
+        seen1 = self.pose.resample(log_pose1, -ego12[:, 2])
+        log_g, direction = self.pose.rotation(seen1, log_pose2)
+        omega = torch.atan2(direction[..., 1], direction[..., 0]) * (q12 + 1e-8)
+        log_pose3 = self.pose.resample(self.pose.rotate(log_pose2, log_g), -ego23[:, 2])
+        return dict(omega=omega, direction=direction, log_pose3=log_pose3)
+
+    def turn_in_space(self, m12, m23, rotation1, rotation2, q12):
+        expected = nearest_rotation(rotation2 @ (m12[:, None, :3, :3] @ rotation1).transpose(-1, -2))
+        vector = turn_vector(expected) * q12[..., None]
+        return dict(turn_vector=vector, rotation3=m23[:, None, :3, :3] @ turn_matrix(vector) @ rotation2)
+
+    def rigid_pixels(self, points, m23, location, velocity, turn):
         flat = points.flatten(2)[:, None]                                                # (B, 1, 3, HW)
-        moved = rz @ (flat - location[..., None]) + (location + velocity)[..., None]
+        moved = turn @ (flat - location[..., None]) + (location + velocity)[..., None]
         every = torch.cat([moved, flat], 1)
         every = m23[:, None, :3, :3] @ every + m23[:, None, :3, 3:]
         return every.reshape(*every.shape[:3], *points.shape[2:])
@@ -467,10 +532,11 @@ class Opple(nn.Module):
 
     def imagine(self, image, depth, masks, ego, motion):
         log_depth = torch.log(depth + 1e-5)
+        told = lambda m: m if self.cfg.orientation == "euler" else m[:, [0, 1, 3, 4]]
         logits = []
         for k in range(masks.shape[1]):
             x = torch.cat([image, log_depth[:, None]], 1) * masks[:, k:k + 1]
-            logits.append(self.imagine_net(x, torch.cat([ego, motion[:, k][:, [0, 1, 3, 4]]], 1)))
+            logits.append(self.imagine_net(x, torch.cat([ego, told(motion[:, k])], 1)))
         y = torch.stack(logits, 1)                                                       # (B, K+1, 5, H, W)
         weight = F.softmax(y[:, :, 4], 1)
         depth = self.cfg.max_depth * torch.sigmoid(y[:, :, 3]) + 1e-5
@@ -481,18 +547,31 @@ def losses(cfg, out, image3, permutation):
     """dict of the named terms and `total`; permutation (B,) pairs scenes for the collapse term"""
     o1, o2, o3 = out["o1"], out["o2"], out["o3"]
     log_w23, q23 = match(cfg, o2["code"], o3["code"])
-    location, log_pose = align(log_w23, out["location3"], out["log_pose3"])
+    predicted = align(log_w23, {k: out[k + "3"] for k in ("location", "log_pose", "rotation") if k + "3" in out})
     mask = o2["masks"][:, :-1]
     centre = torch.einsum("bkhw,bchw->bkc", mask, out["points2"]) / (mask.sum((2, 3)) + 1e-22)[..., None]
     terms = dict(image=((out["predicted"] - image3) ** 2).sum((1, 2, 3)).mean(),
                  centre=((centre - o2["location"]) ** 2).mean(),
-                 location=(((location - o3["location"]) ** 2).sum(2) * q23).sum(1).mean(),
-                 pose=(divergence(cfg, o3["log_pose"], log_pose) * q23).sum(1).mean(),
+                 location=(((predicted["location"] - o3["location"]) ** 2).sum(2) * q23).sum(1).mean(),
+                 pose=(divergence(cfg, o3, predicted) * q23).sum(1).mean(),
                  collapse=-((o1["location"][permutation] - o3["location"]).abs().sum(2).clamp(max=1) * q23).sum(1).mean())
-    return dict(terms, total=terms["image"] + cfg.reg * sum(v for k, v in terms.items() if k != "image"))
+    factor = dict(dict.fromkeys(terms, cfg.reg), image=1)
+    if cfg.smoothness:
+        steps = [o2["masks"].diff(dim=axis) for axis in (2, 3)]
+        terms["smoothness"] = sum((s ** 2).sum() for s in steps) / len(image3)
+        factor["smoothness"] = cfg.reg * cfg.smoothness
+    if cfg.pose_contrast:
+        other = dict(log_pose=o1["log_pose"][permutation])
+        terms["pose_contrast"] = -(divergence(cfg, o3, other).clamp(max=2) * q23).sum(1).mean()
+        factor["pose_contrast"] = cfg.reg * cfg.pose_contrast
+    return dict(terms, total=sum(factor[k] * v for k, v in terms.items()))
 
 
-def divergence(cfg, log_p, log_q):
+def divergence(cfg, seen, predicted):
+    """how far two orientations are from each other (B, K)"""
+    if cfg.orientation == "euler":
+        return 0.5 * ((seen["rotation"] - predicted["rotation"]) ** 2).sum((-1, -2))
+    log_p, log_q = seen["log_pose"], predicted["log_pose"]
     kl = lambda a, b: (a.exp() * (a - b)).sum(-1)
     if cfg.pose_loss == "js":
         log_m = torch.logaddexp(log_p, log_q) - math.log(2)

@@ -33,7 +33,10 @@ TEST(ParityTest, Relaxed) { expect_parity(test_device(), "relaxed.safetensors");
 
 TEST(ParityTest, EulerAngles) { expect_parity(test_device(), "euler.safetensors"); }
 
-TEST(ParityTest, OddSizesAndMoreTerms) { expect_parity(test_device(), "odd.safetensors"); }
+// Plain sums move a value over a kink here too: four gradients are over their limits, the worst by a quarter.
+TEST(ParityTest, OddSizesAndMoreTermsWithPlainSums) { expect_parity(test_device(), "odd.safetensors", 1e-3); }
+
+TEST(ParityTest, OddSizesAndMoreTermsWithExactSums) { expect_parity(exact_device(), "odd.safetensors"); }
 
 // Training's own sums are held to the limits in all but gradients; convolutions that keep what they round off
 // are held to every limit.

@@ -184,7 +184,7 @@ TEST(Config, RefusalsNameFileKeyAndRange) {
   EXPECT_EQ(refusal(R"({"training": {"clip": {"depth": -1}}})"),
             "run.json: training.clip.depth is -1; give a number from 1e-09 to 1000000000");
   EXPECT_EQ(refusal(R"({"training": {"clip": {"depht": 1}}})"),
-            "run.json: training.clip.depht is no key; the keys here are depth, object, imagination");
+            "run.json: training.clip.depht is no key; the keys here are depth, object, imagination, motion");
   EXPECT_EQ(refusal(R"({"rooms": {"shapes": ["cube", "cube"]}})"),
             "run.json: rooms.shapes has cube twice; keep one");
   EXPECT_EQ(refusal(R"({"training": {"stages": [{"steps": 5, "rooms": {"size": [0.1]}}]}})"),

@@ -161,6 +161,28 @@ TEST(ImageIo, RefusesOtherKindsCutOff) {
   }
 }
 
+TEST(ImageIo, JpegInMemory) {
+  const TempFolder folder;
+  write_any(folder / "a.jpg", 3, OIIO::TypeDesc::UINT8, std::vector<float>(3 * 1024, 0.6f), 32, 32);
+  const Bytes jpeg = read_file(folder / "a.jpg", 1 << 20);
+  EXPECT_NEAR(decode_rgb(jpeg, "x.jpg").pixels[5], 0.6f, 0.02f);
+  expect_error([&] { decode_rgb(std::span(jpeg).first(jpeg.size() * 2 / 3), "x.jpg"); }, {"x.jpg"});
+  expect_near(decode_rgb(encode_png(picture(3, 2)), "x.png").pixels, picture(3, 2).pixels);
+}
+
+TEST(ImageIo, GreyNumbersOfAsManyBits) {
+  const TempFolder folder;
+  Plane<std::uint8_t> small(1, 2);
+  small.pixels = {7, 255};
+  EXPECT_EQ(decode_grey<std::uint8_t>(encode_png(small), "x.png").pixels, small.pixels);
+  write_any(folder / "a.png", 1, OIIO::TypeDesc::UINT16, {1000.0f / 65535, 1}, 1, 2);
+  const Bytes deep = read_file(folder / "a.png", 1 << 20);
+  EXPECT_EQ(decode_grey<std::uint16_t>(deep, "x.png").pixels, (std::vector<std::uint16_t>{1000, 65535}));
+  expect_error([&] { decode_grey<std::uint8_t>(deep, "x.png"); }, {"x.png", "one channel of 8 bits"});
+  expect_error([&] { decode_grey<std::uint16_t>(encode_png(small), "x.png"); }, {"one channel of 16 bits"});
+  expect_error([&] { decode_grey<std::uint8_t>(encode_png(picture(2, 2)), "x.png"); }, {"one channel"});
+}
+
 TEST(ImageIo, SurvivesEveryFlippedByte) {
   const auto flip = [](Bytes bytes, auto&& decode) {
     for (std::size_t i = 0; i < bytes.size(); i += 1 + i / 100) {

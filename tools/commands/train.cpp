@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <memory>
@@ -6,6 +7,7 @@
 #include <string>
 
 #include "models/config.h"
+#include "models/presets.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "runtime/wide_vectors.h"
@@ -147,7 +149,8 @@ void run(const Options& o) {
 void add_train(CLI::App& app) {
   CLI::App* command = app.add_subcommand("train", "Train a model");
   const auto o = std::make_shared<Options>();
-  command->add_option("config", o->config, "A configuration file or a preset: full, small, tiny");
+  command->add_option("config", o->config,
+                      fmt::format("A configuration file or a preset: {}", fmt::join(preset_names(), ", ")));
   add_set_option(*command, o->set);
   command->add_option(
       "--data", o->data,

@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::array<int64_t, 3> kLocationWidths{16, 16, 3};
 constexpr std::array<int64_t, 4> kPixelWidths{64, 64, 32, 4};
-constexpr int64_t kLargestPixelWidth = 64;
 
 /// How far the pixels of some images go: (n·S, 3, H, W), row-major. The network's fourth number is that of the
 /// homogeneous 1, which stays.
@@ -34,7 +33,7 @@ Value pixel_steps(LayerFactory& layers, const std::string& name, Value numbers, 
 Value moved(LayerFactory& layers, const std::string& name, Value numbers, Value points) {
   const Shape image = points.shape();
   const int64_t hypotheses = numbers.shape()[1];
-  const uint64_t each = channels4({hypotheses, kLargestPixelWidth, image[2], image[3]}).bytes();
+  const uint64_t each = channels4({hypotheses, std::ranges::max(kPixelWidths), image[2], image[3]}).bytes();
   const int64_t most = std::max<int64_t>(1, static_cast<int64_t>(layers.options().max_tensor_bytes / each));
   std::vector<Value> steps;
   for (int64_t first = 0; first < image[0]; first += most) {

@@ -23,14 +23,11 @@ namespace {
 /// a b, of matrices (B, K, 3, 3); a size of 1 repeats. `transposed`: a bᵀ.
 Value product(Value a, Value b, bool transposed = false) {
   Graph& graph = a.graph();
-  const auto with_axis = [&](Value m, size_t axis) {
-    const Shape s = m.shape();
-    return graph.reshape(m, row_major(axis == 4   ? Shape{s[0], s[1], 3, 3, 1}
-                                      : axis == 3 ? Shape{s[0], s[1], 3, 1, 3}
-                                                  : Shape{s[0], s[1], 1, 3, 3}));
-  };
-  if (transposed) return reduce_sum(mul(with_axis(a, 3), with_axis(b, 2)), {4});
-  return reduce_sum(mul(with_axis(a, 4), with_axis(b, 2)), {3});
+  const Shape sa = a.shape(), sb = b.shape();
+  const Shape rows = transposed ? Shape{sa[0], sa[1], 3, 1, 3} : Shape{sa[0], sa[1], 3, 3, 1};
+  const Value parts =
+      mul(graph.reshape(a, row_major(rows)), graph.reshape(b, row_major({sb[0], sb[1], 1, 3, 3})));
+  return reduce_sum(parts, {transposed ? size_t{4} : size_t{3}});
 }
 
 /// §4: distributions over yaw.

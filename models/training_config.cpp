@@ -12,18 +12,18 @@ constexpr std::size_t kMostStages = 100;
 /// What a stage takes over from its surroundings.
 struct StageDefaults {
   const TrainingConfig& training;
-  const std::vector<Network> networks;
+  const ModelConfig& model;
   const RoomsConfig& rooms;
 };
 
 TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   TrainingStage s;
-  s.networks = defaults.networks;
+  s.networks = networks_of(defaults.model);
   s.learning_rate = defaults.training.learning_rate;
   s.batch = defaults.training.batch;
   object.text("name", s.name);
   object.choices("networks", s.networks, kNetworkNames);
-  if (s.learns(Network::kMotion) && defaults.networks.size() < kNetworkNames.size())
+  if (s.learns(Network::kMotion) && !defaults.model.relaxed)
     object.refuse("networks", "has motion, which is learned only where model.relaxed is true");
   object.choice("hypotheses", s.hypotheses, kHypothesesNames);
   if (s.hypotheses == Hypotheses::kBackground && s.networks != std::vector{Network::kDepth})
@@ -64,7 +64,7 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& ro
 }
 
 void read_stages(JsonObject& object, TrainingConfig& c, const ModelConfig& model, const RoomsConfig& rooms) {
-  const StageDefaults defaults{c, networks_of(model), rooms};
+  const StageDefaults defaults{c, model, rooms};
   std::vector<JsonObject> listed = object.objects("stages", kMostStages);
   for (std::size_t i = 0; i < listed.size(); ++i) {
     const TrainingStage stage = read_stage(listed[i], defaults);

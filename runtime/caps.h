@@ -71,7 +71,7 @@ struct Caps {
 
   bool subgroup_shuffle = false;
   bool subgroup_arithmetic = false;
-  bool int64 = false;  ///< 64-bit integers in shaders, which subgroups exchange too
+  bool int64 = false;             ///< 64-bit integers in shaders, which subgroups exchange too
   bool float_atomic_add = false;  ///< VK_EXT_shader_atomic_float on storage buffers
   std::vector<MatrixShape>
       cooperative_matrices;  ///< that kernels can use; empty: none, or a feature is missing
@@ -96,6 +96,8 @@ struct Caps {
 
 /// Why the device can't run a family of kernels, in a line; empty: it can.
 std::string missing_for(KernelFamily family, const Caps& caps);
+/// Likewise for an access path.
+std::string missing_for(AccessPath access, const Caps& caps);
 /// Likewise for convolutions that are made to use Winograd's algorithm.
 std::string missing_for(WinogradUse use, const Caps& caps);
 

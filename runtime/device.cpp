@@ -35,6 +35,12 @@ std::string missing_for(KernelFamily family, const Caps& caps) {
          ": they need a CPU device with shuffles among 8 to 128 lanes; leave the choice to the device";
 }
 
+std::string missing_for(AccessPath access, const Caps& caps) {
+  if (access == AccessPath::kStorage || (caps.int64 && caps.subgroup_shuffle)) return {};
+  return "the texel access path can't be had on " + caps.name +
+         ": it needs subgroups that exchange 64-bit integers; leave the choice to the device";
+}
+
 std::string missing_for(WinogradUse use, const Caps& caps) {
   if (use == WinogradUse::kNever || use == WinogradUse::kWhereFaster) return {};
   if (caps.exact_sums)
@@ -59,9 +65,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
   physical_ = instance_.physical_devices().at(index);
   caps_ = candidates[index].caps;
   if (options.access) {
-    if (*options.access == AccessPath::kTexel && !caps_.int64)
-      throw Error("the texel access path needs 64-bit integers in shaders and subgroups, which " + caps_.name +
-                  " lacks");
+    if (const std::string why = missing_for(*options.access, caps_); !why.empty()) throw Error(why);
     caps_.access = *options.access;
   }
   caps_.row_stores = options.row_stores.value_or(caps_.row_stores) && caps_.access == AccessPath::kTexel;

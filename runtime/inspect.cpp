@@ -157,7 +157,8 @@ Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
   const auto& cooperative = CooperativeFeatures::kExtensions;
   if (std::all_of(cooperative.begin(), cooperative.end(), [&](const char* e) { return has(extensions, e); }))
     found.caps.cooperative_matrices = query_cooperative_matrices(instance, device);
-  const bool texel = found.caps.int64 && found.caps.max_texel_elements >= kLargeTexelBuffer;
+  const bool texel =
+      missing_for(AccessPath::kTexel, found.caps).empty() && found.caps.max_texel_elements >= kLargeTexelBuffer;
   // Texel reads pay on CPU devices; GPUs cache storage buffers just as well.
   found.caps.access = texel && found.caps.cpu() ? AccessPath::kTexel : AccessPath::kStorage;
   if (!has_compute_queue(device)) found.missing.emplace_back("a compute queue");

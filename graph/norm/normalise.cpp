@@ -8,12 +8,13 @@
 namespace vkopple {
 namespace {
 
-// Strips of a channel block: enough to fill the device, few enough for the second stage. An item costs some 3
-// ns on lavapipe, a workgroup half a microsecond, so 64 are worth an invocation; 1024 in a compensated sum of
+// Strips of a channel block: enough to fill the device, few enough for the second stage. A lane's item costs
+// some 3 ns on lavapipe, a workgroup 0.4 µs, so 64 are worth an invocation there; 1024 in a compensated sum of
 // fours keep float32's digits.
 constexpr uint32_t kStripsOnCpu = 256;
 constexpr uint32_t kStripsOnGpu = 512;
-constexpr uint32_t kFewestItems = 64;
+constexpr uint32_t kFewestItemsOnCpu = 64;
+constexpr uint32_t kFewestItemsOnGpu = 16;
 constexpr uint32_t kMostItems = 1024;
 constexpr uint32_t kPixelsEach = 16;
 // Rows of a workgroup of norm_apply where it stores rows. A workgroup costs as much as nine rows, and 32
@@ -73,7 +74,8 @@ Normalise::Normalise(const Shape& x, int64_t groups, const NormSurround& surroun
   const uint32_t items = per_group_ * pixels_;
   const uint32_t lanes = lanes_for(items, caps);
   const uint32_t target = caps.cpu() ? kStripsOnCpu : kStripsOnGpu;
-  const uint32_t each = std::clamp(divide_up(items, target), kFewestItems, kMostItems);
+  const uint32_t each =
+      std::clamp(divide_up(items, target), caps.cpu() ? kFewestItemsOnCpu : kFewestItemsOnGpu, kMostItems);
   strips_ = {.items = items,
              .strips = divide_up(items, each << lanes) << lanes,
              .lanes = lanes,

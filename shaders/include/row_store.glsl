@@ -65,14 +65,14 @@ u64vec2 row_words(bool is_float16, vec4 v) {
 // y[base + lane] = v as far as that is below `limit`, which is even; kRowStores must hold.
 #define store4_row_below(name, limit, base, v)                                                            \
   {                                                                                                       \
-    u64vec2 words_ = ROW_WORDS(name, v);                                                                    \
+    u64vec2 words_ = ROW_WORDS(name, v);                                                                  \
     [[unroll]] for (int lane_ = 0; lane_ < kMostLanes; lane_ += 2)                                        \
       STORE_LANES(name, (base) + lane_ < (limit), (base) + lane_, words_, lane_, words_, lane_ + 1)       \
   }
 #define store4_row(name, inside, base, v)                                                                 \
   {                                                                                                       \
     if (kRowStores) {                                                                                     \
-      u64vec2 words_ = ROW_WORDS(name, v);                                                                  \
+      u64vec2 words_ = ROW_WORDS(name, v);                                                                \
       int row_at_ = (inside) ? (base) : kNowhere;                                                         \
       [[unroll]] for (int lane_ = 0; lane_ < kMostLanes; lane_ += 2)                                      \
         STORE_LANES(name, true, row_at_ + lane_, words_, lane_, words_, lane_ + 1)                        \

@@ -70,14 +70,12 @@ const Device* other_access_device(KernelFamily family) {
   static std::map<KernelFamily, std::unique_ptr<Device>> devices;
   const Caps& caps = test_device().caps();
   const bool texel = caps.access == AccessPath::kTexel;
-  if ((!texel && !caps.int64) || !missing_for(family, caps).empty()) return nullptr;
+  const AccessPath other = texel ? AccessPath::kStorage : AccessPath::kTexel;
+  if (!missing_for(other, caps).empty() || !missing_for(family, caps).empty()) return nullptr;
   auto& device = devices[family];
   if (!device)
-    device = std::make_unique<Device>(DeviceOptions{.selector = "",
-                                                    .on_message = fail_test,
-                                                    .access = texel ? AccessPath::kStorage : AccessPath::kTexel,
-                                                    .kernels = family,
-                                                    .cache_folder = {}});
+    device = std::make_unique<Device>(DeviceOptions{
+        .selector = "", .on_message = fail_test, .access = other, .kernels = family, .cache_folder = {}});
   return device.get();
 }
 

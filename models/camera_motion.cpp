@@ -1,5 +1,6 @@
 #include "models/camera_motion.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "models/pose_resampling.h"
@@ -32,9 +33,9 @@ std::array<double, kPixelMotionNumbers> still_row(const std::array<double, 3>& e
 
 CameraMotion::CameraMotion(Graph& graph, const ModelConfig& config, int64_t batch, bool background_only)
     : batch_(batch) {
-  m23 = graph.input("m23", row_major({batch, 4, 4}));
+  if (background_only || !config.relaxed) m23 = graph.input("m23", row_major({batch, 4, 4}));
   if (background_only) return;
-  m12 = graph.input("m12", row_major({batch, 4, 4}));
+  if (!config.relaxed) m12 = graph.input("m12", row_major({batch, 4, 4}));
   if (config.orientation == Orientation::kEuler) {
     ego23 = graph.input("ego23", row_major({batch, 6}));
     turn12 = graph.input("turn12", row_major({batch, 1, 3, 3}));

@@ -22,7 +22,7 @@ class CameraMotion {
   /// Writes what stays. Once, after the executor is made.
   void feed_constants(Executor& executor) const;
 
-  Value m12, m23;  ///< (B, 4, 4), maps of a static point
+  Value m12, m23;  ///< (B, 4, 4), maps of a static point; not of learned motion
   Value ego23;     ///< (B, 3): v_x, v_y, omega; with Euler angles (B, 6): translation, turn vector
   // Of yaw.
   Value index12, index23;  ///< u32 (B), resampling indices of -omega

@@ -41,10 +41,8 @@ Value moved(LayerFactory& layers, const std::string& name, Value numbers, Value 
     steps.push_back(
         pixel_steps(layers, name, take_outer(numbers, first, count), take_outer(points, first, count)));
   }
-  Value all = steps.front();
-  for (size_t i = 1; i < steps.size(); ++i) all = concat({all, steps[i]}, 0);
   Graph& graph = layers.graph();
-  return add(graph.reshape(all, row_major({image[0], hypotheses, 3, image[2], image[3]})),
+  return add(graph.reshape(concat(steps, 0), row_major({image[0], hypotheses, 3, image[2], image[3]})),
              graph.reshape(points, row_major({image[0], 1, 3, image[2], image[3]})));
 }
 

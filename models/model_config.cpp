@@ -8,7 +8,7 @@ namespace {
 constexpr int kLargestImage = 4096;
 constexpr int kMostChannels = 1024;
 constexpr int kMostSlots = 254;  // whose masks, with the background, pictures of 8 bits can number
-constexpr int kMostBins = 3600;
+constexpr int kMostBins = 3600;  // a tenth of a degree each
 
 }  // namespace
 

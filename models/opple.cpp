@@ -174,8 +174,9 @@ void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& mo
   losses_["pose"] = orientation_loss(config_, predicted, o[2], matching.q);
   // Terms that join scenes need the whole batch, which may be of several processes.
   const auto whole_batch = [&](Value part) { return gather_batch(part, options_.peers); };
-  losses_["collapse"] = collapse_loss(whole_batch(o[0].location), whole_batch(o[2].location),
-                                      whole_batch(matching.q), permutation_);
+  const Value whole_q = whole_batch(matching.q);
+  losses_["collapse"] =
+      collapse_loss(whole_batch(o[0].location), whole_batch(o[2].location), whole_q, permutation_);
   const double reg = config_.reg;
   std::vector<Value> terms{losses_["image"]};
   std::vector<float> factors{1.0F};
@@ -189,8 +190,8 @@ void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& mo
     weigh("smoothness", reg * config_.smoothness);
   }
   if (config_.pose_contrast > 0) {
-    losses_["pose_contrast"] = pose_contrast(whole_batch(o[0].log_pose), whole_batch(o[2].log_pose),
-                                             whole_batch(matching.q), permutation_, pose_divergence(config_));
+    losses_["pose_contrast"] = pose_contrast(whole_batch(o[0].log_pose), whole_batch(o[2].log_pose), whole_q,
+                                             permutation_, pose_divergence(config_));
     weigh("pose_contrast", reg * config_.pose_contrast);
   }
   losses_["total"] = weighted_sum(terms, factors);

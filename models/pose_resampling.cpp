@@ -73,7 +73,11 @@ std::vector<float> resampling_rows(int64_t bins) {
     }
     for (size_t d = 0; d < n; ++d) {
       double sum = 0;
-      for (size_t k = 0; k < n; ++k) sum += (quotient[k] * roots[d * k % n]).real();
+      for (size_t k = 0, at = 0; k < n; ++k) {
+        sum += quotient[k].real() * roots[at].real() - quotient[k].imag() * roots[at].imag();
+        at += d;
+        if (at >= n) at -= n;
+      }
       rows.push_back(static_cast<float>(sum / static_cast<double>(n)));
     }
   }

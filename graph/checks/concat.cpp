@@ -32,7 +32,8 @@ void check_concat(CheckList& list) {
   for (const Case& c :
        {Case{row_major({1}), 0, {1, 1}}, Case{row_major({3, 1, 7}), 1, {2, 1, 4}},
         Case{row_major({5, 3}), 1, {3}}, Case{row_major({2, 1, 4, 4}), 1, {2, 3}},
-        Case{row_major({2, 3, 1}), 2, {1, 1, 2, 1, 3, 5}}, Case{channels4({2, 1, 3, 5}), 1, {8, 4}},
+        Case{row_major({2, 3, 1}), 2, {1, 1, 2, 1, 3, 5}},
+        Case{row_major({3, 1, 2}), 1, std::vector<int64_t>(34, 1)}, Case{channels4({2, 1, 3, 5}), 1, {8, 4}},
         Case{channels4({2, 1, 3, 5}), 1, {4, 5}}, Case{channels4({2, 1, 3, 3}), 1, {3, 6}},
         Case{channels4({1, 1, 2, 5}), 1, {1, 1, 1, 1, 1, 1}}, Case{channels4({2, 1, 3, 2}), 1, {4, 3, 2, 7}},
         Case{channels4({1, 1, 1, 1}), 1, {1, 1}}}) {

@@ -4,7 +4,7 @@
 
 namespace vkopple {
 
-/// Of one process; tests/graph/gather_batch_test.cpp has several.
+/// Of one process; tests/graph/shared_batch_test.cpp has several.
 void check_gather_batch(CheckList& list) {
   for (const Shape& shape : {Shape{1}, Shape{3, 2, 3}, Shape{4, 5}})
     list.push_back({.label = shape.text(),

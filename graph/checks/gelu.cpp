@@ -1,5 +1,7 @@
 #include "graph/ops/gelu.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
 
@@ -17,7 +19,7 @@ void check_gelu(CheckList& list) {
   for (const TensorSpec& spec : {row_major({1}), row_major({3, 5, 7}), row_major({1031}),
                                  channels4({2, 3, 5, 7}), channels4({1, 16, 9, 8}), channels4({2, 7, 18, 19})})
     for (const double range : {2.0, 9.0})
-      list.push_back({.label = spec.shape.text(),
+      list.push_back({.label = fmt::format("{} up to {}", spec.shape.text(), range),
                       .op = std::make_shared<Gelu>(),
                       .inputs = {spec},
                       .reference = reference,

@@ -52,8 +52,10 @@ Runs reversed(const Runs& r) {
 }  // namespace
 
 std::vector<TensorSpec> Concat::infer(std::span<const TensorSpec> x) const {
-  require(!x.empty() && x.size() <= kMostInputs, fmt::format("takes 1 to {} inputs", kMostInputs));
+  require(!x.empty(), "takes at least one input");
   const TensorSpec& first = x[0];
+  require(first.layout == Layout::kRowMajor || x.size() <= kMostInputs,
+          fmt::format("takes at most {} inputs of NC4HW4", kMostInputs));
   require(first.dtype == DType::kF32, "takes floats");
   require(axis_ < first.shape.rank(), fmt::format("{} has no axis {}", first.shape.text(), axis_));
   require(first.layout == Layout::kRowMajor || axis_ == 1, "joins NC4HW4 along its channels only");
@@ -118,7 +120,7 @@ void Concat::record_backward(Recorder& recorder, const Backward& io) const {
 }
 
 Value concat(const std::vector<Value>& xs, size_t axis) {
-  if (xs.empty()) throw Error("[concat] takes 1 to 6 inputs");
+  if (xs.empty()) throw Error("[concat] takes at least one input");
   return xs[0].graph().apply1(std::make_shared<Concat>(axis), xs);
 }
 

@@ -4,7 +4,8 @@
 
 namespace vkopple {
 
-/// Joins up to 6 tensors along one axis: any axis row-major, the channels of NC4HW4.
+/// Joins tensors along one axis: any number row-major, along any axis; up to kMostInputs of NC4HW4, along their
+/// channels.
 class Concat : public Op {
  public:
   static constexpr size_t kMostInputs = 6;

@@ -20,7 +20,7 @@ float divergence_slope(float u, float v) {
   return 0.5 * (kDivergence == 0 ? a * (u - v) + (a - precise_exp(v)) : a * log_over_mean(u - v));
 }
 
-// Sum of body(n) over bins n, in runs of 32.
+// Adds `term`, an expression in n, over bins n, in runs of 32.
 #define BIN_SUM(total, bins, term)                                        \
   for (uint first_ = 0; first_ < (bins); first_ += 32) {                  \
     float part_ = 0.0;                                                    \

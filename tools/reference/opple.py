@@ -348,7 +348,7 @@ def align(log_w, seen):
 
 class PoseResampling(nn.Module):
     """T(a) for whole degrees a in [-180, 180] and the prior over rotations, built in float64. The inverse of K_0 loses all
-    digits towards 170 bins (its condition is e^(bins^2 / 800)); up to some 120 it is exact enough to compare with."""
+    digits towards 170 bins (its condition grows about as e^(bins^2 / 800)); up to some 120 it is exact enough to compare with."""
 
     def __init__(self, bins, kappa=100.0, prior_kappa=0.2):
         super().__init__()

@@ -12,7 +12,6 @@ Commands::Commands(const Device& device) : device_(&device) {
   VkFenceCreateInfo fence{};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
   check(vkCreateFence(device.handle(), &fence, nullptr, &fence_), "vkCreateFence");
-  absent_ = std::make_unique<Buffer>(device, 2 * kAbsentBytes, MemoryKind::kDevice, "absent operand");
 }
 
 Commands::~Commands() {
@@ -21,6 +20,12 @@ Commands::~Commands() {
   if (queries_ != VK_NULL_HANDLE) vkDestroyQueryPool(device, queries_, nullptr);
   if (fence_ != VK_NULL_HANDLE) vkDestroyFence(device, fence_, nullptr);
   if (pool_ != VK_NULL_HANDLE) vkDestroyCommandPool(device, pool_, nullptr);
+}
+
+Slice Commands::absent(bool writes) {
+  if (!absent_)
+    absent_ = std::make_unique<Buffer>(*device_, 2 * kAbsentBytes, MemoryKind::kDevice, "absent operand");
+  return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes);
 }
 
 void Commands::submit(VkCommandBuffer buffer, VkFence fence) const {

@@ -5,6 +5,7 @@
 
 #include "runtime/cooperative_matrix.h"
 #include "runtime/pipeline.h"
+#include "runtime/staging.h"
 #include "runtime/vulkan_error.h"
 
 namespace vkopple {
@@ -79,6 +80,7 @@ Device::Device(DeviceOptions options) : instance_(std::move(options.on_message))
   create_logical_device();
   const auto folder = options.cache_folder.empty() ? default_cache_folder() : options.cache_folder;
   pipelines_ = std::make_unique<PipelineSet>(*this, options.use_cache ? folder : std::filesystem::path());
+  staging_ = std::make_unique<Staging>(*this);
 }
 
 void Device::create_logical_device() {
@@ -126,22 +128,9 @@ void Device::create_logical_device() {
 Device::~Device() {
   if (device_ == VK_NULL_HANDLE) return;
   vkDeviceWaitIdle(device_);
+  staging_.reset();
   pipelines_.reset();
   vkDestroyDevice(device_, nullptr);
-}
-
-void Device::submit_and_wait(VkCommandBuffer commands) const {
-  VkFenceCreateInfo fence_info{};
-  fence_info.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device_, &fence_info, nullptr, &fence), "vkCreateFence");
-  const std::shared_ptr<void> guard(nullptr, [&](void*) { vkDestroyFence(device_, fence, nullptr); });
-  VkSubmitInfo submit{};
-  submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands;
-  check(vkQueueSubmit(queue_, 1, &submit, fence), "vkQueueSubmit");
-  check(vkWaitForFences(device_, 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
 }
 
 void Device::set_name(VkObjectType type, uint64_t handle, const std::string& name) const {

@@ -14,6 +14,7 @@
 namespace vkopple {
 
 class PipelineSet;
+class Staging;
 
 struct DeviceOptions {
   std::string selector;              ///< as device_selector takes it
@@ -49,9 +50,8 @@ class Device {
   uint32_t queue_family() const { return queue_family_; }
   const Caps& caps() const { return caps_; }
   PipelineSet& pipelines() const { return *pipelines_; }
+  Staging& staging() const { return *staging_; }
 
-  /// Runs a recorded command buffer and waits for its end.
-  void submit_and_wait(VkCommandBuffer commands) const;
   /// Gives a Vulkan object a name for debuggers and validation messages; nothing where the device can't.
   void set_name(VkObjectType type, uint64_t handle, const std::string& name) const;
 
@@ -66,6 +66,7 @@ class Device {
   Caps caps_;
   PFN_vkSetDebugUtilsObjectNameEXT set_name_ = nullptr;
   std::unique_ptr<PipelineSet> pipelines_;
+  std::unique_ptr<Staging> staging_;
 };
 
 }  // namespace vkopple

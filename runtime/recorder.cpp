@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "runtime/device.h"
+#include "runtime/memory_barrier.h"
 #include "runtime/pipeline.h"
 #include "runtime/vulkan_error.h"
 
@@ -22,19 +23,6 @@ constexpr std::array<uint32_t, 8> kRowDigits{0, 1, 2, 3, 4, 5, 6, 7};
 constexpr uint32_t kRowDigitsAt = 96;
 /// Of shaders/include/unit_rows.glsl.
 constexpr uint32_t kUnitRowsId = 4;
-
-void memory_barrier(VkCommandBuffer buffer, VkPipelineStageFlags from, VkAccessFlags written,
-                    VkPipelineStageFlags to, VkAccessFlags used) {
-  VkMemoryBarrier barrier{};
-  barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
-  barrier.srcAccessMask = written;
-  barrier.dstAccessMask = used;
-  vkCmdPipelineBarrier(buffer, from, to, 0, 1, &barrier, 0, nullptr, 0, nullptr);
-}
-
-constexpr VkPipelineStageFlags kWork = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-constexpr VkAccessFlags kWritten = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-constexpr VkAccessFlags kUsed = kWritten | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
 
 VkFormat texel_format(bool wide, Storage storage) {
   if (!wide) return VK_FORMAT_R32_SFLOAT;
@@ -81,10 +69,7 @@ void Recorder::begin_buffer() {
   check(vkBeginCommandBuffer(buffer_, &begin), "vkBeginCommandBuffer");
   if (timestamps_ && commands_->buffers_.empty())
     vkCmdResetQueryPool(buffer_, commands_->queries_, 0, kMostStamps);
-  // Whatever was submitted before (another chunk, another program, the host's writes) is done and seen from
-  // here on.
-  memory_barrier(buffer_, kWork | VK_PIPELINE_STAGE_HOST_BIT, kWritten | VK_ACCESS_HOST_WRITE_BIT, kWork,
-                 kUsed);
+  wait_for_all_before(buffer_);
   pending_reads_.clear();
   pending_writes_.clear();
   chunk_dispatches_ = 0;
@@ -107,7 +92,7 @@ void Recorder::recorded(std::string_view name) {
 }
 
 void Recorder::end_buffer() {
-  memory_barrier(buffer_, kWork, kWritten, VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  show_to_host(buffer_);
   check(vkEndCommandBuffer(buffer_), "vkEndCommandBuffer");
   commands_->buffers_.push_back(buffer_);
   buffer_ = VK_NULL_HANDLE;
@@ -120,7 +105,7 @@ void Recorder::order(std::span<const Slice> reads, std::span<const Slice> writes
     });
   };
   if (meets(writes, pending_writes_) || meets(writes, pending_reads_) || meets(reads, pending_writes_)) {
-    memory_barrier(buffer_, kWork, kWritten, kWork, kUsed);
+    order_work(buffer_);
     ++commands_->barriers_;
     pending_reads_.clear();
     pending_writes_.clear();

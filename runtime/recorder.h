@@ -113,7 +113,7 @@ class Commands {
   uint32_t stamps_ = 0;  ///< queries that are written
   static constexpr uint64_t kAbsentBytes = 256;
   /// Bound where an optional operand is absent: one part where kernels would read, one where they would write.
-  Slice absent(bool writes) const { return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes); }
+  Slice absent(bool writes);
   std::unique_ptr<Buffer> absent_;
   size_t dispatches_ = 0;
   size_t barriers_ = 0;

@@ -31,7 +31,10 @@ TEST(ParityTest, WithoutWarpingAndJensenShannon) { expect_parity(test_device(), 
 
 TEST(ParityTest, Relaxed) { expect_parity(test_device(), "relaxed.safetensors"); }
 
-TEST(ParityTest, EulerAngles) { expect_parity(test_device(), "euler.safetensors"); }
+// The order of plain sums is the device's: on an NVIDIA H200 one gradient is at 1.6 times its limit.
+TEST(ParityTest, EulerAnglesWithPlainSums) { expect_parity(test_device(), "euler.safetensors", 1e-3); }
+
+TEST(ParityTest, EulerAnglesWithExactSums) { expect_parity(exact_device(), "euler.safetensors"); }
 
 // Plain sums move a value over a kink here too: four gradients are over their limits, by up to 37 %.
 TEST(ParityTest, OddSizesAndMoreTermsWithPlainSums) { expect_parity(test_device(), "odd.safetensors", 1e-3); }

@@ -57,10 +57,11 @@ class Evaluation {
   void add(const TripletBatch& batch, size_t index) {
     const auto count = static_cast<size_t>(batch.batch);
     const auto entities = model_.config().slots + 1;
-    const std::vector<int32_t> labels = true_labels(batch, index);
+    const bool has_masks = !percepts_.masks.empty();
+    const std::vector<int32_t> labels = has_masks ? true_labels(batch, index) : std::vector<int32_t>{};
     const bool has_depth = !batch.depth.empty();
     const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
-    const auto true_objects = true_locations(batch, index);
+    const auto true_objects = has_masks ? true_locations(batch, index) : std::vector<LabelledLocation>{};
     const auto objects = inferred_locations(part(percepts_.location, index, count));
     scores_.add({.true_labels = labels,
                  .predicted_labels = inferred,
@@ -75,16 +76,18 @@ class Evaluation {
   EvaluationScores& scores() { return scores_; }
 
  private:
-  void add_row(const TripletBatch& batch, size_t index, const std::vector<int32_t>& inferred,
+  void add_row(const TripletBatch& batch, size_t index, std::vector<int32_t> inferred,
                std::vector<int32_t> labels) {
     const auto count = static_cast<size_t>(batch.batch);
     RgbImage image(batch.height, batch.width);
     const auto pixels = part(batch.images[1], index, count);
     std::copy(pixels.begin(), pixels.end(), image.pixels.begin());
     for (int32_t& label : labels) --label;  // objects count from 0 in colours, as slots do
-    labels.resize(pixels.size() / 3, -1);   // what is unknown looks like background
+    // What is unknown looks like background, and so does what a model of depth alone infers.
+    labels.resize(pixels.size() / 3, -1);
     const auto farthest = static_cast<float>(model_.config().max_depth);
     const auto background = static_cast<int32_t>(model_.config().slots);
+    inferred.resize(pixels.size() / 3, background);
     const int zoom = zoom_for(batch.height);
     const auto depth = [&](const std::vector<float>& values) {
       return enlarge(depth_picture(plane(part(values, index, count), batch.height, batch.width), farthest),

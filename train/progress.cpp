@@ -26,7 +26,14 @@ std::string progress_line(const StepRecord& record, uint64_t total, double secon
     line += fmt::format("  total {:.4g}", found->second);
   for (const auto& [name, value] : record.losses)
     if (name != "total") line += fmt::format("  {} {:.4g}", name, value);
-  if (record.depth_r) line += fmt::format("  depth r {:.3f}", *record.depth_r);
+  const auto add_known = [&](const char* name, const std::optional<double>& score) {
+    if (score) line += fmt::format("  {} {:.3f}", name, *score);
+  };
+  if (record.held_out) {
+    add_known("ARI-fg", record.held_out->ari_fg);
+    add_known("IoU", record.held_out->iou);
+    add_known("depth r", record.held_out->depth_r);
+  }
   if (record.shared) line += fmt::format("  efficiency {:.0f} %", 100 * record.shared->efficiency);
   const double rate = seconds_per_step > 0 ? record.batch / seconds_per_step : 0;
   const uint64_t left = total > record.step ? total - record.step : 0;
@@ -45,10 +52,10 @@ void Progress::learn_pace(const StepRecord& record) {
 
 void Progress::show(const StepRecord& record) {
   learn_pace(record);
-  if (record.depth_r) depth_r_ = record.depth_r;
+  if (record.held_out) held_out_ = record.held_out;
 
   StepRecord shown = record;
-  shown.depth_r = depth_r_;
+  shown.held_out = held_out_;
   line_.show(progress_line(shown, total_, seconds_per_step_), !begun_ || record.step == total_);
   begun_ = true;
 }

@@ -37,7 +37,7 @@ class Progress {
   std::string stage_;
   uint64_t steps_of_stage_ = 0;
   double seconds_per_step_ = 0;
-  std::optional<double> depth_r_;
+  std::optional<HeldOutScores> held_out_;  ///< as measured last
 };
 
 }  // namespace vkopple

@@ -13,9 +13,10 @@
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "train/data/open_source.h"
-#include "train/depth_probe.h"
+#include "train/held_out_probe.h"
 #include "train/parallel/agreement.h"
 #include "train/step_batch.h"
+#include "train/tensorboard/training_board.h"
 #include "train/training_step.h"
 
 namespace vkopple {
@@ -24,6 +25,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kProbeBatch = 16;
+/// Reading all weights takes about as long as a step does on a fast GPU.
+constexpr uint64_t kNormsEvery = 50;
+/// Measurements between two pictures, which take a hundred times a measurement's bytes.
+constexpr uint64_t kPicturesEvery = 10;
 // Rooms to measure in are never those of training, whose seeds are small numbers as a rule.
 constexpr uint64_t kProbeSeedDistance = 1'000'003;
 
@@ -64,7 +69,13 @@ struct Trainer::Stage {
   const PlannedStage* planned;
   std::unique_ptr<TripletSource> source;
   std::unique_ptr<TrainingStep> training;
-  std::unique_ptr<DepthProbe> probe;
+  std::unique_ptr<HeldOutProbe> probe;
+};
+
+/// What a run tells of itself beside its checkpoints.
+struct Trainer::Diary {
+  TrainingLog log;
+  TrainingBoard board;
 };
 
 Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bool resume)
@@ -105,8 +116,11 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
                      .threads = options_.data_threads,
                      .part = part()});
   if (options_.eval_every > 0 && leads())
-    stage.probe = std::make_unique<DepthProbe>(store_, config_.model, s.rooms, std::min(s.batch, kProbeBatch),
-                                               rooms_seed(options_.data) + kProbeSeedDistance);
+    stage.probe = std::make_unique<HeldOutProbe>(
+        store_, config_.model, s.rooms,
+        HeldOutProbe::Options{.batch = std::min(s.batch, kProbeBatch),
+                              .seed = rooms_seed(options_.data) + kProbeSeedDistance,
+                              .objects = s.hypotheses != Hypotheses::kBackground});
   return stage;
 }
 
@@ -121,7 +135,10 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
         training_triplets(*stage.source, position_.seed, step, s.batch, config_.training.reverse_probability,
                           stage.training->model().first_frame(), part());
   }
-  StepRecord record{.stage = s.name, .batch = s.batch, .data_seconds = seconds_since(start)};
+  StepRecord record{.stage = s.name,
+                    .batch = s.batch,
+                    .data_seconds = seconds_since(start),
+                    .learning_rate = s.learning_rate};
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
   store_.count_step(s.hypotheses == Hypotheses::kBackground);
@@ -131,8 +148,17 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   position_.stage = plan_.stage_of(step);
   position_.stage_step = position_.step - stage.planned->begin;
   record.step = position_.step;
-  if (stage.probe && position_.step % options_.eval_every == 0) record.depth_r = stage.probe->measure();
+  if (leads() && position_.step % kNormsEvery == 0) record.norms = stage.training->norms();
   return record;
+}
+
+void Trainer::measure(Stage& stage, Diary& diary, StepRecord& record) {
+  if (!stage.probe || position_.step % options_.eval_every != 0) return;
+  const uint64_t measurement = position_.step / options_.eval_every;
+  const bool pictured = measurement == 1 || measurement % kPicturesEvery == 0;
+  std::vector<std::vector<RgbImage>> pictures;
+  record.held_out = stage.probe->measure(pictured ? &pictures : nullptr);
+  diary.board.show(position_.step, pictures);
 }
 
 BatchPart Trainer::part() const {
@@ -162,14 +188,16 @@ void Trainer::save_if_due() {
 }
 
 bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
-  std::optional<TrainingLog> log;  // only once all that it needs is there
+  std::optional<Diary> diary;  // only once all that it needs is there
   bool stopped = false;
   while (position_.step < plan_.steps() && !stopped) {
     const PlannedStage& planned = plan_.stages()[plan_.stage_of(position_.step)];
     Stage stage = open_stage(planned);
     if (leads()) {
       options_.folder.create();
-      if (!log) log.emplace(options_.folder.log(), position_.step);
+      if (!diary)
+        diary.emplace(Diary{.log = TrainingLog(options_.folder.log(), position_.step),
+                            .board = TrainingBoard(options_.folder.path(), position_.step)});
       progress.say(stage_text(planned));
       if (device_->caps().cpu())
         progress.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
@@ -178,10 +206,12 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
       {
         const Trace::Span span(trace, "step");
-        const StepRecord record = train_step(stage, trace);
+        StepRecord record = train_step(stage, trace);
         const Trace::Span after(trace, "log and checkpoint");
-        if (log) {
-          log->add(record);
+        if (diary) {
+          measure(stage, *diary, record);
+          diary->log.add(record);
+          diary->board.add(record);
           progress.show(record);
         }
         save_if_due();
@@ -190,6 +220,7 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
       stopped = any(options_.peers, stop());
     }
   }
+  if (diary) diary->board.flush();
   if (profiler_) profiler_->finish();
   save(false);
   return position_.step >= plan_.steps();

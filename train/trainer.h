@@ -28,7 +28,7 @@ struct TrainerOptions {
   std::optional<uint64_t> steps;       ///< of the whole run; see StagePlan
   uint64_t seed = 0;                   ///< of weights, order, reversals, dropout
   uint64_t checkpoint_every = 5000;    ///< steps between numbered checkpoints; 0: none
-  uint64_t eval_every = 250;           ///< steps between measurements of depth; 0: none
+  uint64_t eval_every = 250;           ///< steps between measurements in held-out rooms; 0: none
   std::filesystem::path profile;       ///< where a trace (train/trace.h) goes; empty: none
   int profiled_steps = 1;              ///< of the trace, which leaves out the run's first step
   int data_threads = 2;                ///< that read files ahead
@@ -42,7 +42,7 @@ struct TrainerOptions {
 /// stopped and resumed writes the same bytes as one that never was.
 ///
 /// With peers all of them train the same weights, each on a part of every batch (train/training_step.h). The
-/// process of rank 0 alone writes files, tells of progress and measures depth.
+/// process of rank 0 alone writes files, tells of progress and measures.
 class Trainer {
  public:
   /// A new run; with `resume` one that goes on from the folder's latest checkpoint, which must be of this
@@ -59,9 +59,12 @@ class Trainer {
 
  private:
   struct Stage;
+  struct Diary;
 
   Stage open_stage(const PlannedStage& planned);
   StepRecord train_step(Stage& stage, Trace* trace);
+  /// In held-out rooms, where it is time to.
+  void measure(Stage& stage, Diary& diary, StepRecord& record);
   bool leads() const { return options_.peers == nullptr || options_.peers->rank() == 0; }
   BatchPart part() const;
   SharedStep shared(double waited, double seconds);

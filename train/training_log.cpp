@@ -49,7 +49,14 @@ void TrainingLog::add(const StepRecord& record) {
                               {"losses", record.losses},
                               {"seconds", record.seconds},
                               {"data_seconds", record.data_seconds}};
-  if (record.depth_r) json["depth_r"] = *record.depth_r;
+  const auto add_known = [&](const char* name, const std::optional<double>& score) {
+    if (score) json[name] = *score;
+  };
+  if (record.held_out) {
+    add_known("ari_fg", record.held_out->ari_fg);
+    add_known("iou", record.held_out->iou);
+    add_known("depth_r", record.held_out->depth_r);
+  }
   if (record.shared) {
     json["processes"] = record.shared->processes;
     json["exchange_seconds"] = record.shared->exchange_seconds;

@@ -9,8 +9,8 @@
 namespace vkopple {
 
 /// The log of a run: a JSON object a line and step, {"step", "stage", "losses": {...}, "seconds",
-/// "data_seconds"}, "depth_r" where it was measured, and "processes", "exchange_seconds", "efficiency" where
-/// there are several processes. Throws Error naming the file.
+/// "data_seconds"}, of "ari_fg", "iou" and "depth_r" what was measured, and "processes", "exchange_seconds",
+/// "efficiency" where there are several processes. Throws Error naming the file.
 class TrainingLog {
  public:
   /// Opens it to go on after `step` steps: what it holds from the first line on that belongs to a later step,

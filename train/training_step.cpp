@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "graph/ops/adam.h"
 #include "graph/ops/loss_scale.h"
@@ -27,6 +28,12 @@ double clip_of(const TrainingConfig& training, Network network) {
       return training.clip.motion;
   }
   return training.clip.object;
+}
+
+double norm(const std::vector<float>& values) {
+  double sum = 0;
+  for (const float v : values) sum += double{v} * double{v};
+  return std::sqrt(sum);
 }
 
 /// Each process drops other values of its part.
@@ -58,14 +65,13 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
                                                 .sync_batch_norm = config.training.sync_batch_norm});
   const auto present = model_->groups();
   std::vector<Network> networks;
-  std::vector<std::string> trained;
   for (const Network network : stage.networks) {
     const std::string group(kNetworkNames[static_cast<size_t>(network)]);
     if (std::find(present.begin(), present.end(), group) == present.end()) continue;
     networks.push_back(network);
-    trained.push_back(group);
+    learning_.push_back(group);
   }
-  if (config.training.precision == Precision::kMixed) loss_scale_ = loss_scale(graph_, trained, kLossScale);
+  if (config.training.precision == Precision::kMixed) loss_scale_ = loss_scale(graph_, learning_, kLossScale);
   for (size_t i = 0; i < networks.size(); ++i) {
     AdamOptions options{};
     options.learning_rate = stage.learning_rate;
@@ -73,23 +79,21 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
     options.beta2 = config.training.betas[1];
     options.epsilon = config.training.epsilon;
     options.clip = clip_of(config.training, networks[i]);
-    adam(graph_, trained[i], options, loss_scale_);
+    adam(graph_, learning_[i], options, loss_scale_);
   }
   if (!config.training.sync_batch_norm)
     for (const auto& [group, members] : graph_.states())
       if (group.ends_with("/averages")) averages_.push_back(graph_.group(group));
   ExecutorOptions options{.groups = std::move(groups),
                           .loss = model_->loss(),
-                          .trained = trained,
+                          .trained = learning_,
                           .loss_scale = loss_scale_,
                           .profile = profile};
   if (several(peers)) {
     exchange_.emplace(*peers);
     // Where backward itself exchanges statistics, gradients wait for its end.
-    if (config.training.sync_batch_norm)
-      trained_ = trained;
-    else
-      options.gradient_done = [this](const std::string& group) { begin_exchange(group); };
+    exchanges_late_ = config.training.sync_batch_norm;
+    if (!exchanges_late_) options.gradient_done = [this](const std::string& group) { begin_exchange(group); };
   }
   executor_ = std::make_unique<Executor>(device, graph_, std::move(options));
   // A store that has not been trained in mixed precision yet holds zeros.
@@ -130,7 +134,8 @@ void TrainingStep::begin_exchange(const std::string& group) {
 }
 
 void TrainingStep::finish_gradients() {
-  for (const std::string& group : trained_) begin_exchange(group);
+  if (exchanges_late_)
+    for (const std::string& group : learning_) begin_exchange(group);
   for (const auto& [group, mean] : exchange_->finish()) executor_->write(graph_.gradient(group), mean);
 }
 
@@ -140,6 +145,15 @@ void TrainingStep::average_over_peers(const std::vector<Value>& values) {
     peers_->average(numbers);
     executor_->write(value, numbers);
   }
+}
+
+std::map<std::string, NetworkNorms> TrainingStep::norms() {
+  const double factor = loss_scale_ ? executor_->read(loss_scale_)[LossScale::kFactor] : 1;
+  std::map<std::string, NetworkNorms> norms;
+  for (const std::string& group : learning_)
+    norms[group] = {.weights = norm(executor_->read(graph_.group(group))),
+                    .gradient = factor * norm(executor_->read(graph_.gradient(group)))};
+  return norms;
 }
 
 Losses TrainingStep::read_losses() {

@@ -39,6 +39,10 @@ class TrainingStep {
   /// masks. Losses by name. A step that was made for profiling tells `trace` what it did.
   Losses run(const Triplets& triplets, uint32_t seed, uint32_t step, Trace* trace = nullptr);
 
+  /// Of the networks that learn, by name: the weights' as they are now, the gradient's of the last run, without
+  /// loss scaling. Reads all of them.
+  std::map<std::string, NetworkNorms> norms();
+
  private:
   void begin_exchange(const std::string& group);
   void finish_gradients();
@@ -49,10 +53,11 @@ class TrainingStep {
   Peers* peers_;
   Graph graph_;
   std::unique_ptr<Opple> model_;
-  std::vector<Value> averages_;  ///< running ones that processes have of their own batches
-  Value loss_scale_;             ///< the state of LossScale, in mixed precision
+  std::vector<std::string> learning_;  ///< groups of the networks that learn
+  std::vector<Value> averages_;        ///< running ones that processes have of their own batches
+  Value loss_scale_;                   ///< the state of LossScale, in mixed precision
   std::optional<GradientExchange> exchange_;
-  std::vector<std::string> trained_;  ///< groups whose gradients are exchanged after backward, not during it
+  bool exchanges_late_ = false;  ///< gradients are exchanged after backward, not during it
   double exchange_seconds_ = 0;
   std::unique_ptr<Executor> executor_;
 };

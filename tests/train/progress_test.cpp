@@ -33,9 +33,9 @@ TEST(Progress, Durations) {
 TEST(Progress, ALineTellsAll) {
   EXPECT_EQ(progress_line(record(10), 100, 2), "10/100 all  total 0.25  image 0.5  2 triplets/s  3:00 left");
   StepRecord measured = record(100);
-  measured.depth_r = 0.5;
+  measured.held_out = {.ari_fg = 0.125, .iou = {}, .depth_r = 0.5};
   EXPECT_EQ(progress_line(measured, 100, 2),
-            "100/100 all  total 0.25  image 0.5  depth r 0.500  2 triplets/s  0:00 left");
+            "100/100 all  total 0.25  image 0.5  ARI-fg 0.125  depth r 0.500  2 triplets/s  0:00 left");
 }
 
 TEST(Progress, ATerminalsLineIsRewritten) {

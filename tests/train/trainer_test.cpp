@@ -8,6 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/events.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/small_scene.h"
 #include "tests/support/temp_folder.h"
@@ -129,6 +130,19 @@ TEST_F(Trained, LeavesNumberedCheckpointsAndALog) {
     EXPECT_EQ(lines[i].at("losses").contains("collapse"), i >= 4);
     EXPECT_EQ(lines[i].contains("depth_r"), i == 2 || i == 5);
   }
+}
+
+TEST_F(Trained, TellsTensorBoard) {
+  const auto files = test::event_files(straight().path());
+  ASSERT_EQ(files.size(), 1U);
+  std::map<std::string, std::vector<int64_t>> steps;
+  for (const auto& event : test::read_events(files[0]))
+    for (const auto& value : event.summary().values()) steps[value.tag()].push_back(event.step());
+  EXPECT_EQ(steps.at("loss/total"), (std::vector<int64_t>{4, 6}));
+  EXPECT_EQ(steps.at("loss/collapse"), (std::vector<int64_t>{6}));
+  EXPECT_EQ(steps.at("held_out/depth_r"), (std::vector<int64_t>{3, 6}));
+  EXPECT_EQ(steps.at("held_out"), (std::vector<int64_t>{3}));
+  EXPECT_EQ(steps.at("held_out/iou"), (std::vector<int64_t>{6}));  // depth was learned alone at first
 }
 
 TEST_F(Trained, KnowsItsPlace) {

@@ -36,7 +36,7 @@ TEST(TrainingLog, OneObjectAStep) {
   TrainingLog log(folder / "log.jsonl", 0);
   log.add(record(1));
   StepRecord measured = record(2);
-  measured.depth_r = 0.75;
+  measured.held_out = {.ari_fg = {}, .iou = 0.25, .depth_r = 0.75};
   log.add(measured);
   const auto all = lines(folder / "log.jsonl");
   ASSERT_EQ(all.size(), 2U);
@@ -45,6 +45,8 @@ TEST(TrainingLog, OneObjectAStep) {
       nlohmann::json::parse(
           R"({"step":1,"stage":"depth","losses":{"image":0.5,"total":0.25},"seconds":2.0,"data_seconds":0.5})"));
   EXPECT_EQ(all[1].at("depth_r"), 0.75);
+  EXPECT_EQ(all[1].at("iou"), 0.25);
+  EXPECT_FALSE(all[1].contains("ari_fg"));
 }
 
 TEST(TrainingLog, GoesOnAfterTheCheckpointsStep) {

@@ -174,7 +174,7 @@ void add_train(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--eval-every", o->eval_every,
-                   "Steps between measurements of depth in unseen rooms, for the log; 0: none")
+                   "Steps between measurements in unseen rooms: of depth, and of masks once objects are learned; 0: none")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->add_option(

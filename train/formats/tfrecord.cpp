@@ -32,6 +32,13 @@ std::uint64_t number(std::span<const std::byte> bytes) {
   return value;
 }
 
+template <std::size_t count>
+std::array<std::byte, count> little_endian(std::uint64_t number) {
+  std::array<std::byte, count> bytes{};
+  for (std::size_t i = 0; i < count; ++i) bytes[i] = static_cast<std::byte>(number >> 8 * i & 0xff);
+  return bytes;
+}
+
 /// Whether `check` (4 bytes) is that of `bytes`.
 bool agrees(std::span<const std::byte> bytes, std::span<const std::byte> check) {
   return masked_crc32c(bytes) == number(check);
@@ -167,6 +174,17 @@ class TfRecordReader::File {
   ByteStream stream_;
   std::uint64_t index_ = 0;
 };
+
+void write_tfrecord(std::ostream& to, std::span<const std::byte> record) {
+  const auto write = [&](std::span<const std::byte> bytes) {
+    to.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  const auto length = little_endian<kLengthBytes>(record.size());
+  write(length);
+  write(little_endian<kCheckBytes>(masked_crc32c(length)));
+  write(record);
+  write(little_endian<kCheckBytes>(masked_crc32c(record)));
+}
 
 TfRecordReader::TfRecordReader(std::vector<fs::path> files, std::size_t most_bytes)
     : files_(std::move(files)), most_bytes_(most_bytes) {}

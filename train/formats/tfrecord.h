@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <ostream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,5 +50,8 @@ class TfRecordReader {
   std::size_t opened_ = 0;
   std::unique_ptr<File> file_;
 };
+
+/// Appends a record, plain. The stream tells whether it could be written.
+void write_tfrecord(std::ostream& to, std::span<const std::byte> record);
 
 }  // namespace vkopple

@@ -1,0 +1,17 @@
+#include "train/held_out_probe.h"
+
+#include "train/evaluate.h"
+
+namespace vkopple {
+
+HeldOutProbe::HeldOutProbe(const ModelStore& store, const ModelConfig& config, const RoomsConfig& rooms,
+                           const Options& options)
+    : perception_(store.device(), config, store.groups(), {.batch = options.batch, .objects = options.objects}),
+      rooms_(store.device(), Lens(config), rooms, options.batch, options.seed) {}
+
+HeldOutScores HeldOutProbe::measure(std::vector<std::vector<RgbImage>>* pictures) {
+  const EvaluationScores scores = evaluate(perception_, rooms_, kImages, pictures, kShown);
+  return {.ari_fg = scores.ari_fg(), .iou = scores.iou(), .depth_r = scores.depth_r()};
+}
+
+}  // namespace vkopple

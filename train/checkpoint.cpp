@@ -184,4 +184,26 @@ LoadedModel load_model(const Device& device, const std::filesystem::path& path) 
   return model;
 }
 
+void load_weights(const std::filesystem::path& path, ModelStore& store) {
+  const SafetensorsFile file(named_checkpoint(path));
+  const CheckpointHeader header = header_of(file);
+  const ModelLayout layout(header.config.model, header.config.training.precision);
+  const auto wanted = weight_shapes(store.layout());
+  const auto there = weight_shapes(layout);
+  const auto shape_in = [](const std::map<std::string, StoredShape>& shapes, const std::string& name) {
+    const auto found = shapes.find(name);
+    return found == shapes.end() ? "is absent" : "has the shape " + to_string(found->second);
+  };
+  for (const auto* shapes : {&wanted, &there})
+    for (const auto& [name, shape] : *shapes)
+      if (shape_in(there, name) != shape_in(wanted, name))
+        throw Error(fmt::format("{}: is no model of this configuration's sizes: its {} {}, here it {}",
+                                shown(file.path()), name, shape_in(there, name), shape_in(wanted, name)));
+  std::set<std::string> allowed;
+  for (const LayoutEntry& entry : layout.optimiser()) allowed.insert(entry.name);
+  check_tensors(file, wanted, allowed);
+  read_entries(file, store, store.layout().weights());
+  read_counters(file, store);
+}
+
 }  // namespace vkopple

@@ -52,4 +52,8 @@ struct LoadedModel {
 /// file need not hold the optimiser's state.
 LoadedModel load_model(const Device& device, const std::filesystem::path& path);
 
+/// The weights alone, of such a file, into a store that waits for them. Its model must have the store's
+/// tensors, all of them in their shapes; in whatever else a configuration says it may differ.
+void load_weights(const std::filesystem::path& path, ModelStore& store);
+
 }  // namespace vkopple

@@ -89,7 +89,10 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
     position_ = load_checkpoint(options_.folder.latest(), store_, config_);
     saved_step_ = position_.step;
   } else {
-    store_.initialise(options_.seed);
+    if (options_.weights.empty())
+      store_.initialise(options_.seed);
+    else
+      load_weights(options_.weights, store_);
     position_.seed = options_.seed;
   }
   position_.data = options_.data;

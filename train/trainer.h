@@ -25,6 +25,7 @@ namespace vkopple {
 struct TrainerOptions {
   RunFolder folder;
   std::string data;                    ///< as open_triplets takes it
+  std::filesystem::path weights;       ///< of a model, which a new run begins with; empty: random ones
   std::optional<uint64_t> steps;       ///< of the whole run; see StagePlan
   uint64_t seed = 0;                   ///< of weights, order, reversals, dropout
   uint64_t checkpoint_every = 5000;    ///< steps between numbered checkpoints; 0: none

@@ -72,6 +72,28 @@ class CheckpointFile : public testing::Test {
   ModelStore store_;
 };
 
+TEST_F(CheckpointFile, WeightsServeAModelOfTheSameSizesAlone) {
+  Config other = small_config();
+  other.model.reg = 0.5;
+  ModelStore store(test_device(), other.model, Precision::kMixed);
+  load_weights(path(), store);
+  for (const LayoutEntry& entry : store_.layout().weights())
+    EXPECT_TRUE(store.read(entry) == store_.read(entry)) << entry.name;
+  EXPECT_EQ(store.batch_counters(), store_.batch_counters());
+  for (const LayoutEntry& entry : store.layout().optimiser())
+    EXPECT_TRUE(store.read(entry) == std::vector<float>(static_cast<size_t>(entry.shape.elements()), 0))
+        << entry.name;
+
+  other.model.depth_width = 4;
+  ModelStore wider(test_device(), other.model);
+  expect_error([&] { load_weights(path(), wider); },
+               {"a.safetensors", "sizes", "depth_net", "has the shape [2], here it has the shape [4]"});
+  other = small_config();
+  other.model.relaxed = true;
+  ModelStore relaxed(test_device(), other.model);
+  expect_error([&] { load_weights(path(), relaxed); }, {"is absent, here it has the shape"});
+}
+
 TEST_F(CheckpointFile, GivesBackEveryBit) {
   ModelStore other(test_device(), small_config().model);
   EXPECT_EQ(load_checkpoint(path(), other, small_config()), kPosition);

@@ -32,6 +32,7 @@ struct Options {
   std::vector<std::string> set;
   std::string data;
   std::string out;
+  std::string weights;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
   std::optional<uint64_t> steps;
@@ -71,12 +72,15 @@ Request new_run(const Options& o, TrainerOptions trainer) {
   if (o.data.empty()) throw UsageError("train: say what to train on: --data rooms:SEED, or a folder of shards");
   trainer.data = o.data;
   trainer.seed = o.seed.value_or(0);
+  trainer.weights = o.weights;
   Request request{Config::load(o.config, o.set), std::move(trainer)};
   set_choices(request.config, o);
   return request;
 }
 
 Request resumed_run(const Options& o, TrainerOptions trainer) {
+  if (!o.weights.empty())
+    throw UsageError("--weights: a run that is resumed has its own; leave out one of --weights and --resume");
   if (!std::filesystem::exists(trainer.folder.latest()))
     throw UsageError(fmt::format("{}: no run to resume, there is no {}", o.out,
                                  trainer.folder.latest().filename().string()));
@@ -174,7 +178,8 @@ void add_train(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--eval-every", o->eval_every,
-                   "Steps between measurements in unseen rooms: of depth, and of masks once objects are learned; 0: none")
+                   "Steps between measurements in unseen rooms: of depth, and of masks once objects are "
+                   "learned; 0: none")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->add_option(
@@ -189,6 +194,9 @@ void add_train(CLI::App& app) {
                    "Threads that read files ahead, each a batch; changes nothing in what is learned")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  command->add_option("--weights", o->weights,
+                      "Begin with the weights of a checkpoint, or of the run in a folder, in place of random "
+                      "ones; its model must have the same sizes, training and losses may differ");
   command->add_flag("--resume", o->resume,
                     "Go on with the run in --out, to the same bytes as if it had never stopped");
   command->add_flag_callback(
@@ -204,6 +212,7 @@ void add_train(CLI::App& app) {
   command->footer(
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
       "          vkopple train --out run --steps 10000 --resume\n"
+      "          vkopple train small --set training.stages=[] --weights run --data rooms:2 --out other\n"
       "          mpirun -n 4 vkopple train full --data rooms:1 --out run");
   command->callback([o] { run(*o); });
 }

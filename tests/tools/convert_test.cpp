@@ -72,7 +72,9 @@ TEST_F(ConvertCommand, RefusesWrongUse) {
   expect_failure(convert({"--format-option", "fov"}), 2, {"--format-option", "NAME=VALUE"});
   expect_failure(convert({"--format-option", "fov=3"}), 2, {"fov=3"});
   expect_failure(convert({"--map", "image=frames"}), 2, {"image=frames"});
-  expect_failure(convert({"--to-option", "x=3"}), 2, {"x=3"});
+  expect_failure(convert({"--to-option", "x=3"}), 2, {"--to-option x=3", "shards knows scenes_per_shard"});
+  expect_failure(convert({"--to-option", "scenes_per_shard=0"}), 2, {"--to-option scenes_per_shard=0", "1 to"});
+  expect_failure(convert({"--to", "recording", "--to-option", "every=2"}), 2, {"--to-option every=2", "none"});
   expect_failure(convert({"--size", "1"}), 2, {"--size"});
   expect_failure(convert({"--limit", "0"}), 2, {"--limit"});
   expect_failure(convert({"--scale", "0"}), 2, {"--scale"});

@@ -34,10 +34,11 @@ class SceneWriter {
 /// A format of data sets. Every train/formats/readers/NAME_format.cpp defines `SceneFormat NAME_format();`,
 /// which the build finds (cmake/formats.cmake).
 struct SceneFormat {
-  std::string name;                 ///< for --format
-  std::string about;                ///< one line
-  std::vector<NamedHelp> settings;  ///< that `open` and `create` know
-  std::vector<NamedHelp> fields;    ///< that `--map` can rename
+  std::string name;                       ///< for --format
+  std::string about;                      ///< one line
+  std::vector<NamedHelp> settings;        ///< that `open` knows
+  std::vector<NamedHelp> write_settings;  ///< that `create` knows
+  std::vector<NamedHelp> fields;          ///< that `--map` can rename
   /// Whether a path holds this format, by a quick look that throws nothing. At most one format may say so.
   bool (*recognises)(const std::filesystem::path& path) = nullptr;
   std::unique_ptr<SceneReader> (*open)(const std::filesystem::path& path,
@@ -62,7 +63,8 @@ SceneFormat detect_format(const std::filesystem::path& path);
 std::unique_ptr<SceneReader> open_scenes(const std::filesystem::path& path, const std::string& name = "",
                                          const FormatOptions& options = {});
 
-/// A new data set at `path`.
+/// A new data set at `path`. Throws UsageError for an option that the format doesn't know in writing, or where
+/// it is only read.
 std::unique_ptr<SceneWriter> create_scenes(const std::filesystem::path& path, const std::string& name,
                                            const FormatOptions& options = {});
 

@@ -109,13 +109,22 @@ TEST(OpenScenes, RefusesOptionsThatTheFormatDoesNotKnow) {
       [&] {
         open_scenes(folder / "set", "", {.settings = {{"fov", "3"}}});
       },
-      {"--format-option fov=3", "shards knows scenes_per_shard"});
+      {"--format-option fov=3", "shards knows none"});
+  expect_error(
+      [&] {
+        open_scenes(folder / "set", "", {.settings = {{"scenes_per_shard", "3"}}});
+      },
+      {"--format-option scenes_per_shard=3"});
   expect_error(
       [&] {
         open_scenes(folder / "set", "shards", {.fields = {{"image", "x"}}});
       },
       {"--map image=x", "shards knows none"});
-  expect_error([&] { create_scenes(folder / "new", "shards", {.settings = {{"x", "3"}}}); }, {"x=3"});
+  expect_error(
+      [&] {
+        create_scenes(folder / "new", "shards", {.settings = {{"x", "3"}}});
+      },
+      {"x=3", "shards knows scenes_per_shard"});
 }
 
 TEST(OpenScenes, ChecksWhatComesOut) {
@@ -148,10 +157,13 @@ TEST(FormatOptions, AreParsed) {
   EXPECT_EQ(options.field("depth", "g"), "g");
   EXPECT_EQ(options.choice("word", {"seven", "eight"}, "eight"), "seven");
   EXPECT_EQ(options.text("words", "none"), "none");
-  expect_error([&] { options.integer("n", 1, 6, 2); }, {"n=7", "whole number from 1 to 6"});
+  expect_error([&] { options.integer("n", 1, 6, 2); }, {"--format-option n=7", "whole number from 1 to 6"});
   expect_error([&] { options.integer("x", 1, 6, 2); }, {"x=1.5"});
   expect_error([&] { options.number("word", 1, 6, 2); }, {"word=seven"});
-  expect_error([&] { options.choice("word", {"six"}, "six"); }, {"word=seven", "one of six"});
+  expect_error([&] { options.choice("word", {"six"}, "six"); }, {"--format-option word=seven", "one of six"});
+  const FormatOptions to{.settings = {{"n", "7"}}, .option = "--to-option"};
+  expect_error([&] { to.number("n", 1, 6, 2); }, {"--to-option n=7"});
+  expect_error([&] { to.choice("n", {"six"}, "six"); }, {"--to-option n=7"});
 }
 
 }  // namespace

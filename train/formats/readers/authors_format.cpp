@@ -166,12 +166,13 @@ bool recognises(const fs::path& path) {
 }  // namespace
 
 SceneFormat authors_format() {
+  const NamedHelp images{"images", fmt::format("the folder of pictures, {} unless given", kImages)};
+  const NamedHelp angle{"fov", fmt::format("vertical angle of view in degrees, {} unless given", kFovDegrees)};
+  const NamedHelp unit{"depth_unit", "scene units in one unit of the depth pictures, 1 unless given"};
   return {.name = "authors",
           .about = fmt::format("the authors' rooms: {}, or cam_pos_STEM.txt, and pictures", kTable),
-          .settings = {{"images", fmt::format("the folder of pictures, {} unless given", kImages)},
-                       {"fov", fmt::format("vertical angle of view in degrees, {} unless given", kFovDegrees)},
-                       {"depth_unit", "scene units in one unit of the depth pictures, 1 unless given"},
-                       {"frames", "of a scene, where there is no table: 3 unless given"}},
+          .settings = {images, angle, unit, {"frames", "of a scene, where there is no table: 3 unless given"}},
+          .write_settings = {images, unit},
           .fields = {},
           .recognises = recognises,
           .open = [](const fs::path& path, const FormatOptions& options) -> std::unique_ptr<SceneReader> {

@@ -200,6 +200,7 @@ SceneFormat recording_format() {
   return {.name = "recording",
           .about = "a folder of pictures with their cameras in poses.json",
           .settings = cutting_help(),
+          .write_settings = {},
           .fields = {},
           .recognises =
               [](const fs::path& path) {

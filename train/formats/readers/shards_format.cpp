@@ -55,7 +55,8 @@ SceneFormat shards_format() {
   return {
       .name = "shards",
       .about = "tar shards in the WebDataset convention, as generate writes them",
-      .settings = {{"scenes_per_shard", "in writing: scenes in one tar file, 256 unless given"}},
+      .settings = {},
+      .write_settings = {{"scenes_per_shard", "scenes in one tar file, 256 unless given"}},
       .fields = {},
       .recognises = recognises,
       .open = [](const fs::path& path, const FormatOptions&) -> std::unique_ptr<SceneReader> {

@@ -61,7 +61,8 @@ TEST_F(ConvertCommand, ThereAndBack) {
     ASSERT_TRUE(scene);
     test::expect_same(*scene, test::small_scene(i, 3));
   }
-  expect_success(run_vkopple({"convert", out(), folder_ / "authors", "--to", "authors"}));
+  expect_success(run_vkopple(
+      {"convert", out(), folder_ / "authors", "--to", "authors", "--to-option", "fov=71.61972439"}));
   EXPECT_EQ(detect_format(folder_ / "authors").name, "authors");
 }
 

@@ -182,6 +182,15 @@ TEST_F(TumTest, DepthPicturesAreReadWhereThereAreSome) {
   expect_error([&] { open({{"depth", "absent"}}); }, {"absent", "can't be read"});
 }
 
+TEST_F(TumTest, DepthPicturesOfOtherKindsAreRefused) {
+  std::filesystem::create_directory(folder_ / "depth");
+  const std::filesystem::path depth = folder_ / "depth" / "100.593000.png";
+  write_png(depth, Plane<std::uint8_t>(4, 6));
+  expect_error([&] { open()->next(); }, {"depth/100.593000.png", "one channel of 16 bits"});
+  write_grey(depth, 100);
+  expect_error([&] { open()->next(); }, {"depth/100.593000.png", "one channel of 16 bits"});
+}
+
 TEST_F(TumTest, PicturesWithoutAPoseEndAScene) {
   std::filesystem::rename(folder_ / "rgb" / "100.800000.png", folder_ / "rgb" / "100.850000.png");
   expect_error([&] { open(); },

@@ -46,9 +46,9 @@ FeatureNames::FeatureNames(const std::vector<UsualFeature>& features, const Form
 void FeatureNames::check(const Example& first) const {
   for (const auto& [ours, feature] : features_) {
     if (first.contains(feature.usual)) continue;
-    throw Error(fmt::format("{}: no feature {} for {}; give its name by --map {}=NAME{}. There are {}",
-                            first.where(), quote(feature.usual), ours, ours,
-                            feature.needed ? "" : " (- where there is none)", first.listed()));
+    throw UsageError(fmt::format("{}: no feature {} for {}; give its name by --map {}=NAME{}. There are {}",
+                                 first.where(), quote(feature.usual), ours, ours,
+                                 feature.needed ? "" : " (- where there is none)", first.listed()));
   }
 }
 

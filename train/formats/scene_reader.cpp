@@ -75,9 +75,10 @@ SceneFormat detect_format(const std::filesystem::path& path) {
   if (matching.size() == 1) return matching[0];
   const auto name = [](const auto& f) { return f.name; };
   if (matching.empty())
-    throw Error(fmt::format("{}: no known format of data sets; name one of {} by --format, see docs/data.md",
-                            quote(path.string(), 4096), listed(all, name)));
-  throw Error(
+    throw UsageError(
+        fmt::format("{}: no known format of data sets; name one of {} by --format, see docs/data.md",
+                    quote(path.string(), 4096), listed(all, name)));
+  throw UsageError(
       fmt::format("{}: could be {}; name one by --format", quote(path.string(), 4096), listed(matching, name)));
 }
 

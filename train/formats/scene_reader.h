@@ -54,7 +54,8 @@ std::vector<SceneFormat> scene_formats();
 /// The format of that name. Throws UsageError, which lists those there are.
 SceneFormat scene_format(const std::string& name);
 
-/// The format that recognises `path`. Throws Error where none or several do.
+/// The format that recognises `path`. Throws Error where nothing is there, UsageError where none or several
+/// formats do.
 SceneFormat detect_format(const std::filesystem::path& path);
 
 /// Opens `path` in the format `name`, or where that is empty in the one that recognises it. Throws UsageError

@@ -94,10 +94,12 @@ TEST(SceneFormats, AreDetected) {
   const TempFolder folder;
   expect_error([&] { detect_format(folder / "absent"); }, {"absent", "no such file"});
   expect_error([&] { detect_format(folder.path()); }, {folder.path(), "no known format", "--format"});
+  EXPECT_THROW(detect_format(folder.path()), UsageError);
   write_file(folder / "poses.json", "{}");
   EXPECT_EQ(detect_format(folder.path()).name, "recording");
   write_file(folder / "a.tar", "");
   expect_error([&] { detect_format(folder.path()); }, {"recording, shards", "--format"});
+  EXPECT_THROW(detect_format(folder.path()), UsageError);
   EXPECT_EQ(detect_format(folder / "a.tar").name, "shards");
 }
 

@@ -13,10 +13,11 @@ namespace {
 
 constexpr const char* kNone = "-";
 
-/// "movi_e-train_tfrecord-00003-of-01024-000012"
+/// "movi_e-train_tfrecord-00003-of-01024-000012". Of long names the end is kept, where files of a set differ.
 std::string key_of(const TfRecord& record) {
   constexpr std::size_t kLongest = 64;
-  std::string name = record.file.filename().string().substr(0, kLongest);
+  std::string name = record.file.filename().string();
+  name.erase(0, name.size() - std::min(name.size(), kLongest));
   std::replace_if(
       name.begin(), name.end(),
       [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_'; }, '_');

@@ -32,7 +32,7 @@ SceneFrame read_frame(const FilmFrame& listed, double fov) {
   frame.objects = listed.objects;
   if (!listed.planar_depth.empty()) frame.depth = read_planar_depth(listed, fov);
   if (listed.layers.empty()) return frame;
-  DepthAndIds layers = decode_known_exr(read_file(listed.layers, kMaxFileBytes), listed.layers.string());
+  DepthAndIds layers = decode_exr(read_file(listed.layers, kMaxFileBytes), listed.layers.string());
   frame.depth = std::move(layers.depth);
   frame.ids = std::move(layers.ids);
   return frame;

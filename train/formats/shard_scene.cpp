@@ -78,7 +78,7 @@ bool ShardScene::has_layers(int frame) const { return sample_.parts.contains(fmt
 
 DepthAndIds ShardScene::layers(int frame) const {
   const std::string name = fmt::format("{}.exr", frame);
-  DepthAndIds stored = decode_known_exr(sample_.part(name), sample_.where(name));
+  DepthAndIds stored = decode_exr(sample_.part(name), sample_.where(name));
   const bool sound = std::all_of(stored.depth.pixels.begin(), stored.depth.pixels.end(),
                                  [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
   if (!sound)
@@ -153,7 +153,7 @@ Sample shard_sample(const SceneData& scene) {
     const SceneFrame& frame = scene.frames[i];
     sample.parts[fmt::format("{}.png", i)] = encode_png(frame.image);
     if (!frame.depth.pixels.empty() || !frame.ids.pixels.empty())
-      sample.parts[fmt::format("{}.exr", i)] = encode_known_exr({frame.depth, frame.ids});
+      sample.parts[fmt::format("{}.exr", i)] = encode_exr({frame.depth, frame.ids});
     json["frames"].push_back(frame_json(frame));
   }
   const std::string text = json.dump(1) + "\n";

@@ -177,7 +177,7 @@ class RecordingWriter : public SceneWriter {
     write_png(folder_ / (name + ".png"), frame.image);
     if (frame.camera) json["camera"] = *frame.camera;
     if (!frame.depth.pixels.empty() || !frame.ids.pixels.empty()) {
-      write_file(folder_ / (name + ".exr"), encode_known_exr({frame.depth, frame.ids}));
+      write_file(folder_ / (name + ".exr"), encode_exr({frame.depth, frame.ids}));
       json["layers"] = name + ".exr";
     }
     if (frame.objects) {

@@ -74,6 +74,9 @@ TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {
       {"made: its angle of view is 1 ", "1.25", "--fov"});
   write_file(folder / "rooms-000000.tar", "");
   expect_error([&] { create_scenes(folder.path(), "shards"); }, {folder.path(), "holds shards already"});
+  expect_error([&] { create_scenes(folder / "rooms-000000.tar", "shards"); }, {"holds shards already"});
+  write(folder / "new.tar", "shards", {small_scene(1, 3)});
+  EXPECT_TRUE(open_scenes(folder / "new.tar")->next());
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, WholeFormats, testing::Values("shards", "recording"));

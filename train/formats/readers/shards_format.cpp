@@ -63,7 +63,8 @@ SceneFormat shards_format() {
         return std::make_unique<ShardSceneReader>(path);
       },
       .create = [](const fs::path& path, const FormatOptions& options) -> std::unique_ptr<SceneWriter> {
-        if (recognises(path))
+        std::error_code failed;
+        if (fs::exists(path, failed) && recognises(path))
           throw Error(fmt::format("{} holds shards already; remove the old data set or choose another folder",
                                   quote(path.string(), 4096)));
         return std::make_unique<ShardSceneWriter>(path, options);

@@ -16,9 +16,6 @@
 namespace vkopple {
 namespace {
 
-constexpr int kSmallest = 4;  // as a model's configuration has them
-constexpr int kLargest = 4096;
-
 struct Options {
   std::string in, out;
   ForeignData data;
@@ -88,7 +85,7 @@ void add_convert(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("convert", "Turn a data set of any format into tar shards, or into another");
   const auto o = std::make_shared<Options>();
-  const CLI::Range sides(kSmallest, kLargest);
+  const CLI::Range sides(kSmallestImage, kLargestImage);
   command->add_option("in", o->in, "A file or folder")->required();
   command->add_option("out", o->out, "Folder of the new data set; it may not hold one yet")->required();
   add_foreign_data_options(*command, o->data);

@@ -52,6 +52,13 @@ struct SceneData {
 
 /// Most frames of one scene. Readers cut longer films into several scenes.
 inline constexpr std::size_t kMostSceneFrames = 120;
+/// Most objects of one scene.
+inline constexpr std::size_t kMostSceneObjects = 1000;
+/// Largest amount of a coordinate, an angle or a depth: floats are exact enough below.
+inline constexpr double kFarthest = 1e6;
+
+/// Whether every depth is a number from 0 to kFarthest.
+bool is_sound(const Plane<float>& depth);
 
 /// Throws Error, which begins with the source, where a scene breaks what is said above: no or too many frames,
 /// sizes that differ, an angle of view or a number out of bounds, an id without its object.

@@ -14,9 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr uint32_t kMostObjects = 1000;
-constexpr double kFarthest = 1e6;  // of any coordinate: floats are exact enough below
-
 template <std::size_t N>
 std::array<double, N> coordinates(const JsonView& view) {
   const std::vector<double> values = view.numbers(N);
@@ -79,15 +76,13 @@ bool ShardScene::has_layers(int frame) const { return sample_.parts.contains(fmt
 DepthAndIds ShardScene::layers(int frame) const {
   const std::string name = fmt::format("{}.exr", frame);
   DepthAndIds stored = decode_exr(sample_.part(name), sample_.where(name));
-  const bool sound = std::all_of(stored.depth.pixels.begin(), stored.depth.pixels.end(),
-                                 [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
-  if (!sound)
+  if (!is_sound(stored.depth))
     throw Error(fmt::format("{}: Z is negative, not a number or over {}; generate it again",
                             sample_.where(name), kFarthest));
   const auto most = std::max_element(stored.ids.pixels.begin(), stored.ids.pixels.end());
-  if (most != stored.ids.pixels.end() && *most > kMostObjects)
+  if (most != stored.ids.pixels.end() && *most > kMostSceneObjects)
     throw Error(
-        fmt::format("{}: objectId is {}; at most {} are read", sample_.where(name), *most, kMostObjects));
+        fmt::format("{}: objectId is {}; at most {} are read", sample_.where(name), *most, kMostSceneObjects));
   return stored;
 }
 

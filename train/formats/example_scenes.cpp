@@ -79,7 +79,6 @@ std::string place_of(const Example& example, const std::string& feature, std::si
 }
 
 std::vector<SceneFrame> decode_frames(const Example& example, const std::string& feature) {
-  constexpr std::size_t kMostOfFilm = std::size_t{1} << 26;
   const auto pictures = example.bytes(feature);
   if (pictures.size() > kMostSceneFrames)
     throw Error(fmt::format("{}: {} frames are more than {}", example.where(feature), pictures.size(),
@@ -87,12 +86,10 @@ std::vector<SceneFrame> decode_frames(const Example& example, const std::string&
   std::vector<SceneFrame> frames;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const std::string where = place_of(example, feature, i);
-    RgbImage image = decode_rgb(as_bytes(pictures[i]), where);
-    if (image.pixels.size() / 3 > kMostOfFilm / pictures.size())
-      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller", where,
-                              pictures.size(), image.width, image.height));
-    if (i > 0) image = fitting(std::move(image), frames, where);
-    frames.push_back({.image = std::move(image)});
+    SceneFrame frame{.image = decode_rgb(as_bytes(pictures[i]), where)};
+    check_film_size(pictures.size(), frame, where);
+    if (i > 0) frame.image = fitting(std::move(frame.image), frames, where);
+    frames.push_back(std::move(frame));
   }
   return frames;
 }

@@ -48,7 +48,10 @@ std::optional<SceneData> FilmReader::next() {
                             film.frames[0].image.string(), quote(film.key), film.frames.size(),
                             kMostSceneFrames));
   SceneData scene{.key = film.key, .source = film.frames.at(0).image.string(), .fov = fov_};
-  for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame, fov_));
+  for (const FilmFrame& listed : film.frames) {
+    scene.frames.push_back(read_frame(listed, fov_));
+    check_film_size(film.frames.size(), scene.frames.back(), listed.image.string());
+  }
   scene.shapes = film.shapes;
   return scene;
 }

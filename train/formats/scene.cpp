@@ -93,6 +93,19 @@ bool is_sound(const Plane<float>& depth) {
                      [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
 }
 
+void check_film_size(std::size_t frames, const SceneFrame& frame, const std::string& where) {
+  constexpr std::size_t kMostPixelsOfFilm = std::size_t{1} << 26;
+  const auto check = [&](const auto& picture) {
+    const auto area = static_cast<std::size_t>(picture.height) * static_cast<std::size_t>(picture.width);
+    if (area > kMostPixelsOfFilm / frames)
+      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller or fewer",
+                              one_line(where, 4096), frames, picture.width, picture.height));
+  };
+  check(frame.image);
+  check(frame.depth);
+  check(frame.ids);
+}
+
 void check_scene(const SceneData& scene) { SceneCheck(scene).all(); }
 
 }  // namespace vkopple

@@ -60,6 +60,10 @@ inline constexpr double kFarthest = 1e6;
 /// Whether every depth is a number from 0 to kFarthest.
 bool is_sound(const Plane<float>& depth);
 
+/// Readers call this with each frame that they decoded, before the next one takes memory: throws Error, which
+/// begins with `where`, if as many of its size are more than 2^26 pixels.
+void check_film_size(std::size_t frames, const SceneFrame& frame, const std::string& where);
+
 /// Throws Error, which begins with the source, where a scene breaks what is said above: no or too many frames,
 /// sizes that differ, an angle of view or a number out of bounds, an id without its object.
 void check_scene(const SceneData& scene);

@@ -114,13 +114,16 @@ std::vector<PlacedObject> ShardScene::objects(int frame) const {
 SceneData ShardScene::whole() const {
   SceneData scene{.key = sample_.key, .source = sample_.where("json"), .fov = fov()};
   if (view_.contains("scale")) scene.scale = view_["scale"].number();
-  for (int i = 0; sample_.parts.contains(fmt::format("{}.png", i)); ++i) {
+  int frames = 0;
+  while (sample_.parts.contains(fmt::format("{}.png", frames))) ++frames;
+  for (int i = 0; i < frames; ++i) {
     SceneFrame frame{.image = image(i), .camera = camera(i)};
     if (has_layers(i)) {
       DepthAndIds known = layers(i);
       frame.depth = std::move(known.depth);
       frame.ids = std::move(known.ids);
     }
+    check_film_size(static_cast<std::size_t>(frames), frame, sample_.where(fmt::format("{}.png", i)));
     if (has_objects(i)) frame.objects = objects(i);
     scene.frames.push_back(std::move(frame));
   }

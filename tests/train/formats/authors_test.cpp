@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -135,6 +136,16 @@ TEST_F(AuthorsTest, ReadsFoldersOfTexts) {
     write_file(folder_ / "cam_pos_2020-00.txt", wrong);
     expect_error([&] { open_scenes(folder_.path()); }, {"cam_pos_2020-00.txt", "six numbers"});
   }
+}
+
+TEST_F(AuthorsTest, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  for (int i = 0; i < 100; ++i) write_file(folder_ / fmt::format("cam_pos_{:02}.txt", i), "0 0 0 0 0 0");
+  write_png(folder_ / "00_img.png", RgbImage(1000, 1000));
+  expect_error(
+      [&] {
+        open_scenes(folder_.path(), "", {.settings = {{"frames", "100"}}})->next();
+      },
+      {"row 0: 100 frames of 1000 x 1000 pixels are too many"});
 }
 
 TEST_F(AuthorsTest, NamesWhatIsWrong) {

@@ -7,6 +7,7 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
+#include "train/formats/shard_scene.h"
 
 namespace vkopple {
 namespace {
@@ -61,6 +62,17 @@ TEST(ShardScenes, RememberTheScale) {
   const auto reader = open_scenes(folder / "set");
   EXPECT_EQ(reader->next()->scale, 0.4);
   EXPECT_EQ(reader->next()->scale, 1);
+}
+
+TEST(ShardScenes, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  const TempFolder folder;
+  SceneData film{.key = "a", .fov = 1};
+  film.frames.push_back({.image = RgbImage(1000, 1000), .camera = CameraPose{}});
+  Sample sample = shard_sample(film);
+  for (int i = 1; i < 100; ++i) sample.parts[std::to_string(i) + ".png"] = {};
+  ShardWriter(folder.path(), "rooms", 1).add(sample);
+  expect_error([&] { open_scenes(folder.path())->next(); },
+               {"a.0.png: 100 frames of 1000 x 1000 pixels are too many"});
 }
 
 TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {

@@ -52,6 +52,7 @@ class AuthorsReader : public SceneReader {
                     .fov = fov_};
     for (std::size_t i = 0; i < row.stems.size(); ++i) {
       SceneFrame frame = read_frame(row.stems[i], scene.source);
+      check_film_size(row.stems.size(), frame, scene.source);
       frame.camera = row.cameras[i];
       if (!row.objects.empty()) frame.objects = row.objects[i];
       scene.frames.push_back(std::move(frame));

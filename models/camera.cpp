@@ -44,8 +44,11 @@ std::array<double, 3> ego_motion(const CameraPose& a, const CameraPose& b) {
 }
 
 std::array<double, 3> euler_angles(const std::array<double, 9>& rotation) {
-  return {std::atan2(-rotation[1], rotation[4]), std::asin(std::clamp(rotation[7], -1.0, 1.0)),
-          std::atan2(-rotation[6], rotation[8])};
+  const std::array<double, 9>& m = rotation;
+  const double level = std::hypot(m[1], m[4]);  // of the forward axis, the second column
+  const double pitch = std::atan2(m[7], level);
+  if (level <= 1e-9) return {std::atan2(m[3], m[0]), pitch, 0};
+  return {std::atan2(-m[1], m[4]), pitch, std::atan2(-m[6], m[8])};
 }
 
 std::array<double, 6> spatial_ego_motion(const CameraPose& a, const CameraPose& b) {

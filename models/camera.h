@@ -24,6 +24,7 @@ Matrix4 relative(const CameraPose& a, const CameraPose& b);
 std::array<double, 3> ego_motion(const CameraPose& a, const CameraPose& b);
 
 /// Yaw, pitch and roll of a rotation Rz(yaw) · Rx(pitch) · Ry(roll), row-major; pitch from −π/2 to π/2.
+/// Straight up and down, where yaw and roll turn about the same axis, roll is 0.
 std::array<double, 3> euler_angles(const std::array<double, 9>& rotation);
 
 /// The camera's step in a's frame, and its turn from a to b in a's frame as a vector: the axis, as long as the

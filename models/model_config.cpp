@@ -5,7 +5,6 @@
 namespace vkopple {
 namespace {
 
-constexpr int kLargestImage = 4096;
 constexpr int kMostChannels = 1024;
 constexpr int kMostSlots = 254;  // whose masks, with the background, pictures of 8 bits can number
 constexpr int kMostBins = 3600;  // a tenth of a degree each
@@ -14,8 +13,8 @@ constexpr int kMostBins = 3600;  // a tenth of a degree each
 
 ModelConfig read_model_config(JsonObject object) {
   ModelConfig c;
-  object.integer("height", c.height, 4, kLargestImage);
-  object.integer("width", c.width, 4, kLargestImage);
+  object.integer("height", c.height, kSmallestImage, kLargestImage);
+  object.integer("width", c.width, kSmallestImage, kLargestImage);
   object.number("fov", c.fov, 0.05, 3.0);
   object.integer("slots", c.slots, 1, kMostSlots);
   object.integer("bins", c.bins, 1, kMostBins);

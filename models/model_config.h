@@ -26,6 +26,9 @@ inline constexpr std::array<std::string_view, 2> kOrientationNames{"yaw", "euler
 /// Numbers of a slot for the angles' cosines and sines.
 inline constexpr int kEulerNumbers = 6;
 
+/// Pixels on a side of the model's images, least and most.
+inline constexpr int kSmallestImage = 4, kLargestImage = 4096;
+
 /// What fixes the model's shapes and formulas. The defaults are the published model's. Angles in radians,
 /// lengths in scene units.
 struct ModelConfig {

@@ -17,7 +17,7 @@ struct ForeignData {
 
   FormatOptions options() const {
     FormatOptions made;
-    for (const std::string& text : settings) add_assignments(text, "--format-option", made.settings);
+    for (const std::string& text : settings) add_assignments(text, made.option, made.settings);
     for (const std::string& text : fields) add_assignments(text, "--map", made.fields);
     return made;
   }
@@ -37,8 +37,11 @@ inline void add_foreign_data_options(CLI::App& command, ForeignData& data) {
       ->allow_extra_args(false);
 }
 
+/// What a command does with formats.
+enum class FormatUse { kReading, kConverting };
+
 /// The formats with their options, for a command's help.
-inline std::string formats_help() {
+inline std::string formats_help(FormatUse use) {
   std::string text = "Formats:\n";
   for (const SceneFormat& format : scene_formats()) {
     text += fmt::format("  {:<12}{}{}\n", format.name, format.about,
@@ -47,6 +50,9 @@ inline std::string formats_help() {
       text += fmt::format("    {:<18}{}\n", setting.name, setting.help);
     for (const NamedHelp& field : format.fields)
       text += fmt::format("    --map {:<12}{}\n", field.name, field.help);
+    if (use == FormatUse::kReading) continue;
+    for (const NamedHelp& setting : format.write_settings)
+      text += fmt::format("    --to-option {:<18}{}\n", setting.name, setting.help);
   }
   return text;
 }

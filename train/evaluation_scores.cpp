@@ -140,7 +140,8 @@ std::vector<std::string> EvaluationScores::left_out() const {
   };
   say(without_masks_, "masks", "left out of ARI, IoU, angles and distances");
   say(without_depth_, "depth", "left out of the correlation of depth");
-  if (images_ > 0 && places_ == 0)
+  const std::int64_t with_foreground = images_ - without_masks_ - skipped_;
+  if (with_foreground > 0 && places_ == 0)
     lines.emplace_back("where objects are is not known: no angles and distances");
   return lines;
 }

@@ -4,12 +4,11 @@
 
 #include <cmath>
 
+#include "train/formats/scene.h"
 #include "train/json_io.h"
 
 namespace vkopple {
 namespace {
-
-constexpr double kFarthest = 1e6;  // of any coordinate: floats are exact enough below
 
 CameraPose read_pose(const JsonView& view) {
   const std::vector<double> numbers = view.numbers(6);

@@ -78,11 +78,11 @@ class Input {
     return values;
   }
 
-  /// One channel by name, which must be stored with this type.
+  /// One channel by name, which must be stored with this type. No pixels where there is none.
   template <class T>
   Plane<T> read_channel(const std::string& name, TypeDesc type) {
     const int channel = spec().channelindex(name);
-    if (channel < 0) fail("it has no channel " + name);
+    if (channel < 0) return {};
     if (spec().channelformat(channel) != type) fail("its channel " + name + " is not of type " + type.c_str());
     Plane<T> plane;
     plane.height = height();
@@ -188,6 +188,14 @@ ImageSpec exr_spec(int height, int width, int channels) {
   return spec;
 }
 
+std::vector<std::byte> encode_ids_exr(const Plane<std::uint32_t>& ids) {
+  check_size(ids.height, ids.width, ids.pixels.size(), 1);
+  ImageSpec spec = exr_spec(ids.height, ids.width, 1);
+  spec.set_format(TypeDesc::UINT32);
+  spec.channelnames = {"objectId"};
+  return encode("exr", spec, TypeDesc::UINT32, ids.pixels.data());
+}
+
 }  // namespace
 
 RgbImage read_rgb(const fs::path& path) {
@@ -254,12 +262,10 @@ std::vector<std::byte> encode_depth_exr(const Plane<float>& depth) {
   return encode("exr", spec, TypeDesc::FLOAT, depth.pixels.data());
 }
 
-Plane<float> decode_depth_exr(std::span<const std::byte> bytes, const std::string& source) {
-  return guarded(source, [&] { return Input(bytes, "exr", source).read_channel<float>("Z", TypeDesc::FLOAT); });
-}
-
 std::vector<std::byte> encode_exr(const DepthAndIds& layers) {
   const auto& [depth, ids] = layers;
+  if (ids.pixels.empty()) return encode_depth_exr(depth);
+  if (depth.pixels.empty()) return encode_ids_exr(ids);
   check_size(depth.height, depth.width, depth.pixels.size(), 1);
   check_size(depth.height, depth.width, ids.pixels.size(), 1);
   struct Pixel {
@@ -281,29 +287,8 @@ DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& sour
     DepthAndIds layers;
     layers.depth = input.read_channel<float>("Z", TypeDesc::FLOAT);
     layers.ids = input.read_channel<std::uint32_t>("objectId", TypeDesc::UINT32);
-    return layers;
-  });
-}
-
-std::vector<std::byte> encode_known_exr(const DepthAndIds& layers) {
-  if (layers.ids.pixels.empty()) return encode_depth_exr(layers.depth);
-  if (!layers.depth.pixels.empty()) return encode_exr(layers);
-  const Plane<std::uint32_t>& ids = layers.ids;
-  check_size(ids.height, ids.width, ids.pixels.size(), 1);
-  ImageSpec spec = exr_spec(ids.height, ids.width, 1);
-  spec.set_format(TypeDesc::UINT32);
-  spec.channelnames = {"objectId"};
-  return encode("exr", spec, TypeDesc::UINT32, ids.pixels.data());
-}
-
-DepthAndIds decode_known_exr(std::span<const std::byte> bytes, const std::string& source) {
-  return guarded(source, [&] {
-    Input input(bytes, "exr", source);
-    const bool depth = input.spec().channelindex("Z") >= 0, ids = input.spec().channelindex("objectId") >= 0;
-    if (!depth && !ids) input.fail("it has neither a channel Z nor a channel objectId");
-    DepthAndIds layers;
-    if (depth) layers.depth = input.read_channel<float>("Z", TypeDesc::FLOAT);
-    if (ids) layers.ids = input.read_channel<std::uint32_t>("objectId", TypeDesc::UINT32);
+    if (layers.depth.pixels.empty() && layers.ids.pixels.empty())
+      input.fail("it has neither a channel Z nor a channel objectId");
     return layers;
   });
 }

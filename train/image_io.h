@@ -36,16 +36,11 @@ std::vector<std::byte> encode_png(const Plane<std::uint8_t>& plane);
 
 /// One float channel, Z.
 std::vector<std::byte> encode_depth_exr(const Plane<float>& depth);
-Plane<float> decode_depth_exr(std::span<const std::byte> bytes, const std::string& source);
 
-/// Float channel Z and uint32 channel objectId.
+/// Float channel Z and uint32 channel objectId, of which one is left out where its plane has no pixels.
 std::vector<std::byte> encode_exr(const DepthAndIds& layers);
-DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& source);
-
-/// The same with one of the two channels left out where its plane has no pixels.
-std::vector<std::byte> encode_known_exr(const DepthAndIds& layers);
 /// Channels that the file lacks are planes without pixels; one must be there.
-DepthAndIds decode_known_exr(std::span<const std::byte> bytes, const std::string& source);
+DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& source);
 
 /// Whole files, through AtomicFile.
 void write_png(const std::filesystem::path& path, const RgbImage& image);

@@ -135,7 +135,7 @@ TEST_F(CInterface, SeesWhatInferSees) {
     EXPECT_EQ(objects[k].yaw_probability, object.at("yaw_probability"));
     EXPECT_EQ(objects[k].share, object.at("share"));
   }
-  const auto depth = decode_depth_exr(read_file(folder_ / "out/room.depth.exr", kLargestFile), "depth");
+  const auto depth = decode_exr(read_file(folder_ / "out/room.depth.exr", kLargestFile), "depth").depth;
   EXPECT_EQ(0, std::memcmp(depth.pixels.data(), vkopple_seen_depth(seen.get()), kPixels * sizeof(float)));
   const RgbImage mask = read_rgb(folder_ / "out/room.mask.png");
   const uint32_t* indices = vkopple_seen_mask(seen.get());

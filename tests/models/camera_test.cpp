@@ -76,6 +76,16 @@ TEST(CameraTest, EulerAnglesMakeTheirRotation) {
   }
 }
 
+TEST(CameraTest, StraightUpAndDownAllTurningIsYaw) {
+  for (const double up : {1.0, -1.0}) {
+    const Matrix4 m = camera_to_world({0, 0, 0, 0.7, up * kPi / 2, 0.4});
+    const auto angles = euler_angles({m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]});
+    expect_near(angles, {0.7 + up * 0.4, up * kPi / 2, 0});
+    const Matrix4 again = camera_to_world({0, 0, 0, angles[0], angles[1], angles[2]});
+    for (size_t i = 0; i < 16; ++i) EXPECT_NEAR(again[i], m[i], 1e-12) << "entry " << i;
+  }
+}
+
 TEST(CameraTest, ResamplingIndicesAreWholeDegrees) {
   const auto degrees = [](double d) { return resampling_index(d * kPi / 180); };
   EXPECT_EQ(degrees(0), 180U);

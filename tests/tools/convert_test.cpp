@@ -61,7 +61,8 @@ TEST_F(ConvertCommand, ThereAndBack) {
     ASSERT_TRUE(scene);
     test::expect_same(*scene, test::small_scene(i, 3));
   }
-  expect_success(run_vkopple({"convert", out(), folder_ / "authors", "--to", "authors"}));
+  expect_success(run_vkopple(
+      {"convert", out(), folder_ / "authors", "--to", "authors", "--to-option", "fov=71.61972439"}));
   EXPECT_EQ(detect_format(folder_ / "authors").name, "authors");
 }
 
@@ -72,7 +73,9 @@ TEST_F(ConvertCommand, RefusesWrongUse) {
   expect_failure(convert({"--format-option", "fov"}), 2, {"--format-option", "NAME=VALUE"});
   expect_failure(convert({"--format-option", "fov=3"}), 2, {"fov=3"});
   expect_failure(convert({"--map", "image=frames"}), 2, {"image=frames"});
-  expect_failure(convert({"--to-option", "x=3"}), 2, {"x=3"});
+  expect_failure(convert({"--to-option", "x=3"}), 2, {"--to-option x=3", "shards knows scenes_per_shard"});
+  expect_failure(convert({"--to-option", "scenes_per_shard=0"}), 2, {"--to-option scenes_per_shard=0", "1 to"});
+  expect_failure(convert({"--to", "recording", "--to-option", "every=2"}), 2, {"--to-option every=2", "none"});
   expect_failure(convert({"--size", "1"}), 2, {"--size"});
   expect_failure(convert({"--limit", "0"}), 2, {"--limit"});
   expect_failure(convert({"--scale", "0"}), 2, {"--scale"});

@@ -5,6 +5,7 @@
 
 #include "tests/support/program.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/tfrecord.h"
 #include "tests/support/tiny_model.h"
 #include "train/image_io.h"
 #include "train/shards.h"
@@ -138,6 +139,15 @@ TEST_F(EvalCommand, OfClevrMasksAloneAreScored) {
     EXPECT_TRUE(scores.at(key).is_null());
   EXPECT_NE(outcome.errors.find("1 of 1 images have no true depth"), std::string::npos) << outcome.errors;
   EXPECT_NE(outcome.errors.find("where objects are is not known"), std::string::npos) << outcome.errors;
+}
+
+TEST_F(EvalCommand, WhatNeedsOptionsOfConvertIsSentThere) {
+  records::Example example;
+  test::set_bytes(example, "frames", {});
+  test::set_floats(example, "camera_matrices", {});
+  test::write_examples(folder_ / "a.tfrecord", {example});
+  expect_failure(eval(folder_ / "a.tfrecord"), 1,
+                 {"no feature 'depths'", "--map depth=NAME", "by vkopple convert, and use these"});
 }
 
 TEST_F(EvalCommand, FilmsOfAnotherAngleOfViewAreRefused) {

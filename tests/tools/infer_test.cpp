@@ -65,7 +65,7 @@ TEST_F(InferCommand, ResultsHaveTheImagesSize) {
   EXPECT_EQ(written(),
             (std::set<std::string>{"room.depth.exr", "room.json", "room.mask.png", "room.overlay.png"}));
   const RgbImage mask = read_rgb(out() / "room.mask.png"), overlay = read_rgb(out() / "room.overlay.png");
-  const auto depth = decode_depth_exr(read_file(out() / "room.depth.exr", kLargestFile), "depth");
+  const auto depth = decode_exr(read_file(out() / "room.depth.exr", kLargestFile), "depth").depth;
   for (const auto& [height, width] :
        {std::pair(mask.height, mask.width), std::pair(overlay.height, overlay.width),
         std::pair(depth.height, depth.width)}) {

@@ -123,6 +123,15 @@ TEST(EvaluationScores, WhatIsUnknownOfAnImageIsLeftOutAndTold) {
   EXPECT_EQ(scores.left_out().size(), 2u);
 }
 
+TEST(EvaluationScores, WhereNothingIsInSightNoPlacesAreMissed) {
+  EvaluationScores scores;
+  add(scores, {0, 0}, {3, 3}, {1, 2}, {1, 2});  // nothing in sight
+  add(scores, {}, {3, 3}, {1, 2}, {1, 2});      // no masks
+  EXPECT_EQ(scores.left_out().size(), 1u) << "masks";
+  add(scores, {0, 1}, {3, 3}, {1, 2}, {1, 2});
+  EXPECT_EQ(scores.left_out().size(), 2u);
+}
+
 TEST(EvaluationScores, RefusesMapsThatDoNotFitAndStaysAsItWas) {
   EvaluationScores scores;
   test::expect_error([&] { add(scores, {0, 1}, {0, 1}, {1, 2}, {1}); }, {"depth maps of 2 and 1"});

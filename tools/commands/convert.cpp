@@ -16,9 +16,6 @@
 namespace vkopple {
 namespace {
 
-constexpr int kSmallest = 4;  // as a model's configuration has them
-constexpr int kLargest = 4096;
-
 struct Options {
   std::string in, out;
   ForeignData data;
@@ -59,7 +56,8 @@ void report(const Options& o, uint64_t scenes, uint64_t frames) {
 
 void run(const Options& o) {
   FormatOptions to;
-  for (const std::string& text : o.to_settings) add_assignments(text, "--to-option", to.settings);
+  to.option = "--to-option";
+  for (const std::string& text : o.to_settings) add_assignments(text, to.option, to.settings);
   const SceneFit fit = scene_fit(o);
   const auto reader = o.data.open(o.in);
   const auto writer = create_scenes(o.out, o.to, to);
@@ -87,14 +85,14 @@ void add_convert(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("convert", "Turn a data set of any format into tar shards, or into another");
   const auto o = std::make_shared<Options>();
-  const CLI::Range sides(kSmallest, kLargest);
+  const CLI::Range sides(kSmallestImage, kLargestImage);
   command->add_option("in", o->in, "A file or folder")->required();
   command->add_option("out", o->out, "Folder of the new data set; it may not hold one yet")->required();
   add_foreign_data_options(*command, o->data);
   command->add_option("--to", o->to, "The format to write")->capture_default_str();
   command
       ->add_option("--to-option", o->to_settings,
-                   "NAME=VALUE,... of the format that is written; may be repeated")
+                   "NAME=VALUE,... of the format that is written; may be repeated. See the list below")
       ->allow_extra_args(false);
   command->add_option("--limit", o->limit, "Convert so many scenes only")
       ->check(CLI::Range(uint64_t{1}, UINT64_MAX));
@@ -119,7 +117,7 @@ void add_convert(CLI::App& app) {
   command->footer(
       "Examples: vkopple convert rooms pictures --to recording\n"
       "          vkopple convert freiburg1_desk desk --format-option fov=49.8,every=3 --size 64\n" +
-      formats_help());
+      formats_help(FormatUse::kConverting));
   command->callback([o] { run(*o); });
 }
 

@@ -53,7 +53,7 @@ void add_data_info(CLI::App& app) {
   command->footer(
       "Examples: vkopple data-info rooms\n"
       "          vkopple data-info recording --limit 10 --json\n" +
-      formats_help());
+      formats_help(FormatUse::kReading));
   command->callback([o] { run(*o); });
 }
 

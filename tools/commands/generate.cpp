@@ -19,9 +19,6 @@
 namespace vkopple {
 namespace {
 
-constexpr int kSmallest = 4;  // as a model's configuration has them
-constexpr int kLargest = 4096;
-
 struct Options {
   std::string out;
   uint64_t scenes = 0;
@@ -87,7 +84,7 @@ void add_generate(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("generate", "Draw scenes of rooms with moving objects into tar shards");
   const auto o = std::make_shared<Options>();
-  const CLI::Range sides(kSmallest, kLargest);
+  const CLI::Range sides(kSmallestImage, kLargestImage);
   command->add_option("out", o->out, "Folder for the shards; it may not hold any yet")->required();
   command->add_option("--scenes", o->scenes, "How many scenes")
       ->required()

@@ -34,7 +34,9 @@ std::unique_ptr<SampleStore> load_scenes(const std::filesystem::path& path, cons
   const std::string name = quote(path.string(), 4096);
   const std::string advice = "convert it to shards by vkopple convert, and use these";
   try {
-    const auto reader = open_scenes(path);
+    const std::string format = detect_format(path).name;
+    if (format == "shards") return std::make_unique<ShardStore>(path);
+    const auto reader = open_scenes(path, format);
     std::vector<Sample> samples;
     std::uint64_t bytes = 0;
     while (samples.size() < limits.scenes) {
@@ -49,8 +51,8 @@ std::unique_ptr<SampleStore> load_scenes(const std::filesystem::path& path, cons
       samples.push_back(std::move(sample));
     }
     return std::make_unique<MemoryStore>(std::move(samples));
-  } catch (const UsageError& problem) {  // an option of the format is needed, which only convert has
-    throw Error(fmt::format("{}; {}", problem.what(), advice));
+  } catch (const UsageError& problem) {  // an option is needed, which only convert has
+    throw Error(fmt::format("{}; with that option, {}", problem.what(), advice));
   }
 }
 

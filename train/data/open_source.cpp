@@ -9,7 +9,6 @@
 #include "runtime/error.h"
 #include "train/data/load_scenes.h"
 #include "train/data/read_ahead.h"
-#include "train/formats/scene_reader.h"
 #include "train/rooms/room_source.h"
 
 namespace vkopple {
@@ -22,13 +21,6 @@ uint64_t parse_seed(std::string_view text) {
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (problem == std::errc() && end == text.data() + text.size()) return seed;
   throw UsageError(fmt::format("rooms:{}: the seed must be a whole number from 0 to {}", text, UINT64_MAX));
-}
-
-/// Shards are read when they are needed, other formats at once.
-std::unique_ptr<SampleStore> open_store(const std::filesystem::path& path, const Lens& lens,
-                                        const LoadLimits& limits) {
-  if (detect_format(path).name == "shards") return std::make_unique<ShardStore>(path);
-  return load_scenes(path, lens, limits);
 }
 
 std::unique_ptr<TripletSource> part_of(std::unique_ptr<TripletSource> source, BatchPart part) {
@@ -47,7 +39,7 @@ std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::st
                    options.part);
   }
   const LoadLimits limits{.scenes = options.reading == Reading::kEvaluation ? options.scenes : UINT64_MAX};
-  auto source = part_of(std::make_unique<ShardSource>(open_store(data, lens, limits), data, lens, batch,
+  auto source = part_of(std::make_unique<ShardSource>(load_scenes(data, lens, limits), data, lens, batch,
                                                       options.seed, options.reading, options.part.count),
                         options.part);
   if (options.reading == Reading::kTraining)

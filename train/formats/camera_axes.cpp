@@ -65,19 +65,11 @@ CameraPose pose_of(const Vector& position, const Turn& turn, CameraAxes camera, 
   const auto seen = [&](const Vector& axis) {
     return to_own_world(turn(to_their_camera(axis, camera)), world);
   };
-  // Columns of Rz(yaw) Rx(pitch) Ry(roll): the camera's axes in the world.
   const Vector right = seen({1, 0, 0}), forward = seen({0, 1, 0}), up = seen({0, 0, 1});
   const Vector place = to_own_world(position, world);
-  const double level = std::hypot(forward[0], forward[1]);
-  CameraPose pose{place[0], place[1], place[2]};
-  pose[4] = std::atan2(forward[2], level);
-  if (level > 1e-9) {
-    pose[3] = std::atan2(-forward[0], forward[1]);
-    pose[5] = std::atan2(-right[2], up[2]);
-  } else {  // straight up or down: yaw and roll turn about the same axis
-    pose[3] = std::atan2(right[1], right[0]);
-  }
-  return pose;
+  const Vector angles =
+      euler_angles({right[0], forward[0], up[0], right[1], forward[1], up[1], right[2], forward[2], up[2]});
+  return {place[0], place[1], place[2], angles[0], angles[1], angles[2]};
 }
 
 }  // namespace

@@ -36,14 +36,15 @@ ordered_json NumberRange::to_json() const {
   return {{"min", least_}, {"max", largest_}, {"mean", mean()}};
 }
 
-std::string NumberRange::to_text() const {
+std::string NumberRange::to_text(const std::string& unit) const {
   if (count_ == 0) return "unknown";
-  if (largest_ - least_ <= 1e-9 * std::abs(largest_)) return fmt::format("{:.4g}", largest_);
-  return fmt::format("{:.4g} to {:.4g}, mean {:.4g}", least_, largest_, mean());
+  if (largest_ - least_ <= 1e-9 * std::abs(largest_)) return fmt::format("{:.4g}{}", largest_, unit);
+  return fmt::format("{:.4g} to {:.4g}, mean {:.4g}{}", least_, largest_, mean(), unit);
 }
 
 void DataSummary::add(const SceneData& scene) {
   ++scenes_;
+  all_frames_ += scene.frames.size();
   frames_.add(static_cast<double>(scene.frames.size()));
   fov_.add(degrees(scene.fov));
   triplets_ += strided_triplets(static_cast<int>(scene.frames.size())).size();
@@ -100,12 +101,10 @@ void DataSummary::add_depth(const Plane<float>& depth) {
 
 std::vector<std::string> DataSummary::warnings() const {
   std::vector<std::string> all;
-  const auto frames =
-      std::lround(frames_.count() == 0 ? 0 : frames_.mean() * static_cast<double>(frames_.count()));
   if (scenes_ == 0) all.push_back("no scenes");
   if (without_camera_ > 0)
     all.push_back(
-        fmt::format("{} of {} frames have no camera pose, which training needs", without_camera_, frames));
+        fmt::format("{} of {} frames have no camera pose, which training needs", without_camera_, all_frames_));
   if (short_scenes_ > 0)
     all.push_back(fmt::format("{} of {} scenes have less than the three frames that training needs",
                               short_scenes_, scenes_));
@@ -166,12 +165,12 @@ std::string DataSummary::to_text() const {
   row("frames a scene", frames_.to_text());
   row("triplets", std::to_string(triplets_));
   row("pixels", sizes);
-  row("angle of view", fov_.to_text() + " degrees, vertical");
+  row("angle of view", fov_.to_text(" degrees, vertical"));
   row("camera step", step_.to_text());
-  row("camera turn", turn_.to_text() + " degrees");
+  row("camera turn", turn_.to_text(" degrees"));
   row("camera height", height_.to_text());
-  row("camera pitch", pitch_.to_text() + " degrees");
-  row("camera roll", roll_.to_text() + " degrees");
+  row("camera pitch", pitch_.to_text(" degrees"));
+  row("camera roll", roll_.to_text(" degrees"));
   row("depth", depth_.to_text());
   row("depth unknown", fmt::format("{:.3g} of the pixels", share(unknown_depth_, depth_pixels_)));
   row("pixels of objects", object_share_.to_text());

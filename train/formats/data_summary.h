@@ -29,8 +29,8 @@ class NumberRange {
 
   /// {"min", "max", "mean"}; null where there were no numbers.
   nlohmann::ordered_json to_json() const;
-  /// "0.5 to 7, mean 2.1"; "unknown" where there were none.
-  std::string to_text() const;
+  /// "0.5 to 7, mean 2.1", and the unit; "unknown" where there were no numbers.
+  std::string to_text(const std::string& unit = "") const;
 
  private:
   double least_ = std::numeric_limits<double>::infinity(), largest_ = -least_, sum_ = 0;
@@ -52,7 +52,7 @@ class DataSummary {
   void add_step(const CameraPose& from, const CameraPose& to);
   void add_depth(const Plane<float>& depth);
 
-  std::uint64_t scenes_ = 0, triplets_ = 0, short_scenes_ = 0, still_scenes_ = 0;
+  std::uint64_t scenes_ = 0, all_frames_ = 0, triplets_ = 0, short_scenes_ = 0, still_scenes_ = 0;
   std::uint64_t without_camera_ = 0, with_depth_ = 0, with_labels_ = 0, with_objects_ = 0;
   std::uint64_t depth_pixels_ = 0, unknown_depth_ = 0, saturated_depth_ = 0;
   std::map<std::pair<int, int>, std::uint64_t> sizes_;  ///< frames by width and height

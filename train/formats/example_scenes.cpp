@@ -13,10 +13,11 @@ namespace {
 
 constexpr const char* kNone = "-";
 
-/// "movi_e-train_tfrecord-00003-of-01024-000012"
+/// "movi_e-train_tfrecord-00003-of-01024-000012". Of long names the end is kept, where files of a set differ.
 std::string key_of(const TfRecord& record) {
   constexpr std::size_t kLongest = 64;
-  std::string name = record.file.filename().string().substr(0, kLongest);
+  std::string name = record.file.filename().string();
+  name.erase(0, name.size() - std::min(name.size(), kLongest));
   std::replace_if(
       name.begin(), name.end(),
       [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_'; }, '_');
@@ -46,9 +47,9 @@ FeatureNames::FeatureNames(const std::vector<UsualFeature>& features, const Form
 void FeatureNames::check(const Example& first) const {
   for (const auto& [ours, feature] : features_) {
     if (first.contains(feature.usual)) continue;
-    throw Error(fmt::format("{}: no feature {} for {}; give its name by --map {}=NAME{}. There are {}",
-                            first.where(), quote(feature.usual), ours, ours,
-                            feature.needed ? "" : " (- where there is none)", first.listed()));
+    throw UsageError(fmt::format("{}: no feature {} for {}; give its name by --map {}=NAME{}. There are {}",
+                                 first.where(), quote(feature.usual), ours, ours,
+                                 feature.needed ? "" : " (- where there is none)", first.listed()));
   }
 }
 
@@ -78,7 +79,6 @@ std::string place_of(const Example& example, const std::string& feature, std::si
 }
 
 std::vector<SceneFrame> decode_frames(const Example& example, const std::string& feature) {
-  constexpr std::size_t kMostOfFilm = std::size_t{1} << 26;
   const auto pictures = example.bytes(feature);
   if (pictures.size() > kMostSceneFrames)
     throw Error(fmt::format("{}: {} frames are more than {}", example.where(feature), pictures.size(),
@@ -86,12 +86,10 @@ std::vector<SceneFrame> decode_frames(const Example& example, const std::string&
   std::vector<SceneFrame> frames;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const std::string where = place_of(example, feature, i);
-    RgbImage image = decode_rgb(as_bytes(pictures[i]), where);
-    if (image.pixels.size() / 3 > kMostOfFilm / pictures.size())
-      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller", where,
-                              pictures.size(), image.width, image.height));
-    if (i > 0) image = fitting(std::move(image), frames, where);
-    frames.push_back({.image = std::move(image)});
+    SceneFrame frame{.image = decode_rgb(as_bytes(pictures[i]), where)};
+    check_film_size(pictures.size(), frame, where);
+    if (i > 0) frame.image = fitting(std::move(frame.image), frames, where);
+    frames.push_back(std::move(frame));
   }
   return frames;
 }

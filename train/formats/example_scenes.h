@@ -34,7 +34,8 @@ class FeatureNames {
  public:
   FeatureNames(const std::vector<UsualFeature>& features, const FormatOptions& options);
 
-  /// Throws Error, which lists the features that there are, where the example lacks one that was not given up.
+  /// Throws UsageError, which lists the features that there are, where the example lacks one that was not given
+  /// up.
   void check(const Example& first) const;
 
   bool has(const std::string& ours) const { return features_.contains(ours); }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "runtime/error.h"
 #include "train/atomic_file.h"
@@ -16,14 +15,14 @@ namespace {
 
 constexpr long kFramesOfAFilm = 24;
 constexpr std::size_t kFewestFrames = 3;
-constexpr std::size_t kMaxLayersBytes = std::size_t{1} << 30;
+constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30;
 
-/// Grey levels of 16 bits are exact in floats from 0 to 1.
 Plane<float> read_planar_depth(const FilmFrame& listed, double fov) {
-  const RgbImage picture = read_rgb(listed.planar_depth);
-  Plane<float> depth(picture.height, picture.width);
+  const Plane<std::uint16_t> steps =
+      decode_grey<std::uint16_t>(read_file(listed.planar_depth, kMaxFileBytes), listed.planar_depth.string());
+  Plane<float> depth(steps.height, steps.width);
   for (std::size_t i = 0; i < depth.pixels.size(); ++i)
-    depth.pixels[i] = static_cast<float>(std::round(65535.0 * picture.pixels[i]) * listed.depth_unit);
+    depth.pixels[i] = static_cast<float>(steps.pixels[i] * listed.depth_unit);
   planar_to_euclidean(depth, fov);
   return depth;
 }
@@ -33,7 +32,7 @@ SceneFrame read_frame(const FilmFrame& listed, double fov) {
   frame.objects = listed.objects;
   if (!listed.planar_depth.empty()) frame.depth = read_planar_depth(listed, fov);
   if (listed.layers.empty()) return frame;
-  DepthAndIds layers = decode_known_exr(read_file(listed.layers, kMaxLayersBytes), listed.layers.string());
+  DepthAndIds layers = decode_exr(read_file(listed.layers, kMaxFileBytes), listed.layers.string());
   frame.depth = std::move(layers.depth);
   frame.ids = std::move(layers.ids);
   return frame;
@@ -49,7 +48,10 @@ std::optional<SceneData> FilmReader::next() {
                             film.frames[0].image.string(), quote(film.key), film.frames.size(),
                             kMostSceneFrames));
   SceneData scene{.key = film.key, .source = film.frames.at(0).image.string(), .fov = fov_};
-  for (const FilmFrame& frame : film.frames) scene.frames.push_back(read_frame(frame, fov_));
+  for (const FilmFrame& listed : film.frames) {
+    scene.frames.push_back(read_frame(listed, fov_));
+    check_film_size(film.frames.size(), scene.frames.back(), listed.image.string());
+  }
   scene.shapes = film.shapes;
   return scene;
 }

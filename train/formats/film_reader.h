@@ -14,7 +14,7 @@ struct FilmFrame {
   std::filesystem::path image;
   std::optional<CameraPose> camera;
   std::filesystem::path layers;        ///< EXR of depth and ids; empty: there is none
-  std::filesystem::path planar_depth;  ///< grey picture of 16 bits, distances along the optical axis; likewise
+  std::filesystem::path planar_depth;  ///< grey PNG of 16 bits, distances along the optical axis; likewise
   double depth_unit = 1;               ///< scene units in one step of it
   std::optional<std::vector<PlacedObject>> objects;
 };

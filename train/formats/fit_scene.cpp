@@ -30,8 +30,9 @@ Cut cut_for(const SceneData& scene, const SceneFit& fit) {
                     "angle of view",
                     one_line(scene.source, 4096), degrees(scene.fov), degrees(*fit.fov)));
   double rows = std::min(part, 1.0) * height;
+  // Rounded up, so that columns are cropped and rows, which the angle of view spans, are not.
   const int kept_ratio =
-      fit.width ? std::max(*fit.width * height / width, 1) : std::max(static_cast<int>(rows), 1);
+      fit.width ? (*fit.width * height + width - 1) / width : std::max(static_cast<int>(rows), 1);
   Cut cut{{}, fit.height.value_or(kept_ratio), 0};
   cut.width = fit.width.value_or(std::max(cut.height * width / height, 1));
   const double ratio = static_cast<double>(cut.width) / cut.height;

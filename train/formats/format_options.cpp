@@ -14,12 +14,12 @@ namespace vkopple {
 namespace {
 
 template <class Number>
-Number parse(const std::string& name, const std::string& text, Number lowest, Number highest) {
+Number parse(const std::string& assigned, const std::string& text, Number lowest, Number highest) {
   Number value{};
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (problem == std::errc() && end == text.data() + text.size() && value >= lowest && value <= highest)
     return value;
-  throw UsageError(fmt::format("--format-option {}={}: must be a {}number from {} to {}", name, one_line(text),
+  throw UsageError(fmt::format("{}={}: must be a {}number from {} to {}", assigned, one_line(text),
                                std::is_integral_v<Number> ? "whole " : "", lowest, highest));
 }
 
@@ -34,18 +34,18 @@ std::string FormatOptions::choice(const std::string& name, const std::vector<std
                                   const std::string& otherwise) const {
   const std::string chosen = text(name, otherwise);
   if (std::find(choices.begin(), choices.end(), chosen) != choices.end()) return chosen;
-  throw UsageError(fmt::format("--format-option {}={}: must be one of {}", name, one_line(chosen),
-                               fmt::join(choices, ", ")));
+  throw UsageError(
+      fmt::format("{} {}={}: must be one of {}", option, name, one_line(chosen), fmt::join(choices, ", ")));
 }
 
 double FormatOptions::number(const std::string& name, double lowest, double highest, double otherwise) const {
   const auto found = settings.find(name);
-  return found == settings.end() ? otherwise : parse(name, found->second, lowest, highest);
+  return found == settings.end() ? otherwise : parse(option + " " + name, found->second, lowest, highest);
 }
 
 long FormatOptions::integer(const std::string& name, long lowest, long highest, long otherwise) const {
   const auto found = settings.find(name);
-  return found == settings.end() ? otherwise : parse(name, found->second, lowest, highest);
+  return found == settings.end() ? otherwise : parse(option + " " + name, found->second, lowest, highest);
 }
 
 double FormatOptions::degrees(const std::string& name, double lowest, double highest, double otherwise) const {

@@ -14,8 +14,9 @@ struct NamedHelp {
 /// What a user says of a foreign data set that its files don't. Names were checked against the format's lists
 /// before a reader sees them.
 struct FormatOptions {
-  std::map<std::string, std::string> settings;  ///< --format-option NAME=VALUE
+  std::map<std::string, std::string> settings;  ///< NAME=VALUE
   std::map<std::string, std::string> fields;    ///< --map OURS=THEIRS,...: what the file calls a field
+  std::string option = "--format-option";       ///< by which settings were given, for messages
 
   /// A setting, or `otherwise` where it wasn't given.
   std::string text(const std::string& name, const std::string& otherwise) const;

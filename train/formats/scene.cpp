@@ -12,9 +12,6 @@
 namespace vkopple {
 namespace {
 
-constexpr double kFarthest = 1e6;  // of any coordinate: floats are exact enough below
-constexpr std::size_t kMostObjects = 1000;
-
 bool in_bounds(double number) { return std::abs(number) <= kFarthest; }  // not a number: no
 
 class SceneCheck {
@@ -63,9 +60,7 @@ class SceneCheck {
     const auto in_range = [](float value) { return value >= 0 && value <= 1; };
     if (!std::all_of(frame.image.pixels.begin(), frame.image.pixels.end(), in_range))
       wrong("a colour is not between 0 and 1");
-    const auto sound = [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); };
-    if (!std::all_of(frame.depth.pixels.begin(), frame.depth.pixels.end(), sound))
-      wrong(fmt::format("a depth is negative, not a number or over {}", kFarthest));
+    if (!is_sound(frame.depth)) wrong(fmt::format("a depth is negative, not a number or over {}", kFarthest));
     if (frame.camera && !std::all_of(frame.camera->begin(), frame.camera->end(), in_bounds))
       wrong("the camera's pose is out of bounds");
     check_objects(frame, wrong);
@@ -73,8 +68,8 @@ class SceneCheck {
 
   template <class Wrong>
   void check_objects(const SceneFrame& frame, const Wrong& wrong) const {
-    const std::size_t known = frame.objects ? frame.objects->size() : kMostObjects;
-    if (known > kMostObjects) wrong(fmt::format("{} objects are more than {}", known, kMostObjects));
+    const std::size_t known = frame.objects ? frame.objects->size() : kMostSceneObjects;
+    if (known > kMostSceneObjects) wrong(fmt::format("{} objects are more than {}", known, kMostSceneObjects));
     for (const std::uint32_t id : frame.ids.pixels)
       if (id > known) wrong(fmt::format("label {} has no object: there are {}", id, known));
     if (!frame.objects) return;
@@ -92,6 +87,24 @@ class SceneCheck {
 };
 
 }  // namespace
+
+bool is_sound(const Plane<float>& depth) {
+  return std::all_of(depth.pixels.begin(), depth.pixels.end(),
+                     [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
+}
+
+void check_film_size(std::size_t frames, const SceneFrame& frame, const std::string& where) {
+  constexpr std::size_t kMostPixelsOfFilm = std::size_t{1} << 26;
+  const auto check = [&](const auto& picture) {
+    const auto area = static_cast<std::size_t>(picture.height) * static_cast<std::size_t>(picture.width);
+    if (area > kMostPixelsOfFilm / frames)
+      throw Error(fmt::format("{}: {} frames of {} x {} pixels are too many; make them smaller or fewer",
+                              one_line(where, 4096), frames, picture.width, picture.height));
+  };
+  check(frame.image);
+  check(frame.depth);
+  check(frame.ids);
+}
 
 void check_scene(const SceneData& scene) { SceneCheck(scene).all(); }
 

@@ -52,6 +52,17 @@ struct SceneData {
 
 /// Most frames of one scene. Readers cut longer films into several scenes.
 inline constexpr std::size_t kMostSceneFrames = 120;
+/// Most objects of one scene.
+inline constexpr std::size_t kMostSceneObjects = 1000;
+/// Largest amount of a coordinate, an angle or a depth: floats are exact enough below.
+inline constexpr double kFarthest = 1e6;
+
+/// Whether every depth is a number from 0 to kFarthest.
+bool is_sound(const Plane<float>& depth);
+
+/// Readers call this with each frame that they decoded, before the next one takes memory: throws Error, which
+/// begins with `where`, if as many of its size are more than 2^26 pixels.
+void check_film_size(std::size_t frames, const SceneFrame& frame, const std::string& where);
 
 /// Throws Error, which begins with the source, where a scene breaks what is said above: no or too many frames,
 /// sizes that differ, an angle of view or a number out of bounds, an id without its object.

@@ -54,11 +54,6 @@ void require_known(const std::map<std::string, std::string>& given, const std::v
   }
 }
 
-void require_known(const FormatOptions& options, const SceneFormat& format) {
-  require_known(options.settings, format.settings, "--format-option", format.name);
-  require_known(options.fields, format.fields, "--map", format.name);
-}
-
 }  // namespace
 
 SceneFormat scene_format(const std::string& name) {
@@ -80,16 +75,18 @@ SceneFormat detect_format(const std::filesystem::path& path) {
   if (matching.size() == 1) return matching[0];
   const auto name = [](const auto& f) { return f.name; };
   if (matching.empty())
-    throw Error(fmt::format("{}: no known format of data sets; name one of {} by --format, see docs/data.md",
-                            quote(path.string(), 4096), listed(all, name)));
-  throw Error(
+    throw UsageError(
+        fmt::format("{}: no known format of data sets; name one of {} by --format, see docs/data.md",
+                    quote(path.string(), 4096), listed(all, name)));
+  throw UsageError(
       fmt::format("{}: could be {}; name one by --format", quote(path.string(), 4096), listed(matching, name)));
 }
 
 std::unique_ptr<SceneReader> open_scenes(const std::filesystem::path& path, const std::string& name,
                                          const FormatOptions& options) {
   const SceneFormat format = name.empty() ? detect_format(path) : scene_format(name);
-  require_known(options, format);
+  require_known(options.settings, format.settings, options.option, format.name);
+  require_known(options.fields, format.fields, "--map", format.name);
   return std::make_unique<CheckedReader>(format.open(path, options));
 }
 
@@ -97,7 +94,7 @@ std::unique_ptr<SceneWriter> create_scenes(const std::filesystem::path& path, co
                                            const FormatOptions& options) {
   const SceneFormat format = scene_format(name);
   if (format.create == nullptr) throw UsageError(fmt::format("the format {} can only be read", format.name));
-  require_known(options, format);
+  require_known(options.settings, format.write_settings, options.option, format.name);
   return format.create(path, options);
 }
 

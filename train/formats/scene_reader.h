@@ -34,10 +34,11 @@ class SceneWriter {
 /// A format of data sets. Every train/formats/readers/NAME_format.cpp defines `SceneFormat NAME_format();`,
 /// which the build finds (cmake/formats.cmake).
 struct SceneFormat {
-  std::string name;                 ///< for --format
-  std::string about;                ///< one line
-  std::vector<NamedHelp> settings;  ///< that `open` and `create` know
-  std::vector<NamedHelp> fields;    ///< that `--map` can rename
+  std::string name;                       ///< for --format
+  std::string about;                      ///< one line
+  std::vector<NamedHelp> settings;        ///< that `open` knows
+  std::vector<NamedHelp> write_settings;  ///< that `create` knows
+  std::vector<NamedHelp> fields;          ///< that `--map` can rename
   /// Whether a path holds this format, by a quick look that throws nothing. At most one format may say so.
   bool (*recognises)(const std::filesystem::path& path) = nullptr;
   std::unique_ptr<SceneReader> (*open)(const std::filesystem::path& path,
@@ -53,7 +54,8 @@ std::vector<SceneFormat> scene_formats();
 /// The format of that name. Throws UsageError, which lists those there are.
 SceneFormat scene_format(const std::string& name);
 
-/// The format that recognises `path`. Throws Error where none or several do.
+/// The format that recognises `path`. Throws Error where nothing is there, UsageError where none or several
+/// formats do.
 SceneFormat detect_format(const std::filesystem::path& path);
 
 /// Opens `path` in the format `name`, or where that is empty in the one that recognises it. Throws UsageError
@@ -62,7 +64,8 @@ SceneFormat detect_format(const std::filesystem::path& path);
 std::unique_ptr<SceneReader> open_scenes(const std::filesystem::path& path, const std::string& name = "",
                                          const FormatOptions& options = {});
 
-/// A new data set at `path`.
+/// A new data set at `path`. Throws UsageError for an option that the format doesn't know in writing, or where
+/// it is only read.
 std::unique_ptr<SceneWriter> create_scenes(const std::filesystem::path& path, const std::string& name,
                                            const FormatOptions& options = {});
 

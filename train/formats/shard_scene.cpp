@@ -14,9 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr uint32_t kMostObjects = 1000;
-constexpr double kFarthest = 1e6;  // of any coordinate: floats are exact enough below
-
 template <std::size_t N>
 std::array<double, N> coordinates(const JsonView& view) {
   const std::vector<double> values = view.numbers(N);
@@ -78,16 +75,14 @@ bool ShardScene::has_layers(int frame) const { return sample_.parts.contains(fmt
 
 DepthAndIds ShardScene::layers(int frame) const {
   const std::string name = fmt::format("{}.exr", frame);
-  DepthAndIds stored = decode_known_exr(sample_.part(name), sample_.where(name));
-  const bool sound = std::all_of(stored.depth.pixels.begin(), stored.depth.pixels.end(),
-                                 [](float z) { return z >= 0 && z <= static_cast<float>(kFarthest); });
-  if (!sound)
+  DepthAndIds stored = decode_exr(sample_.part(name), sample_.where(name));
+  if (!is_sound(stored.depth))
     throw Error(fmt::format("{}: Z is negative, not a number or over {}; generate it again",
                             sample_.where(name), kFarthest));
   const auto most = std::max_element(stored.ids.pixels.begin(), stored.ids.pixels.end());
-  if (most != stored.ids.pixels.end() && *most > kMostObjects)
+  if (most != stored.ids.pixels.end() && *most > kMostSceneObjects)
     throw Error(
-        fmt::format("{}: objectId is {}; at most {} are read", sample_.where(name), *most, kMostObjects));
+        fmt::format("{}: objectId is {}; at most {} are read", sample_.where(name), *most, kMostSceneObjects));
   return stored;
 }
 
@@ -119,13 +114,16 @@ std::vector<PlacedObject> ShardScene::objects(int frame) const {
 SceneData ShardScene::whole() const {
   SceneData scene{.key = sample_.key, .source = sample_.where("json"), .fov = fov()};
   if (view_.contains("scale")) scene.scale = view_["scale"].number();
-  for (int i = 0; sample_.parts.contains(fmt::format("{}.png", i)); ++i) {
+  int frames = 0;
+  while (sample_.parts.contains(fmt::format("{}.png", frames))) ++frames;
+  for (int i = 0; i < frames; ++i) {
     SceneFrame frame{.image = image(i), .camera = camera(i)};
     if (has_layers(i)) {
       DepthAndIds known = layers(i);
       frame.depth = std::move(known.depth);
       frame.ids = std::move(known.ids);
     }
+    check_film_size(static_cast<std::size_t>(frames), frame, sample_.where(fmt::format("{}.png", i)));
     if (has_objects(i)) frame.objects = objects(i);
     scene.frames.push_back(std::move(frame));
   }
@@ -153,7 +151,7 @@ Sample shard_sample(const SceneData& scene) {
     const SceneFrame& frame = scene.frames[i];
     sample.parts[fmt::format("{}.png", i)] = encode_png(frame.image);
     if (!frame.depth.pixels.empty() || !frame.ids.pixels.empty())
-      sample.parts[fmt::format("{}.exr", i)] = encode_known_exr({frame.depth, frame.ids});
+      sample.parts[fmt::format("{}.exr", i)] = encode_exr({frame.depth, frame.ids});
     json["frames"].push_back(frame_json(frame));
   }
   const std::string text = json.dump(1) + "\n";

@@ -58,7 +58,11 @@ TEST_F(LoadScenesTest, NamesConvertWhereTheFormatNeedsOptions) {
   std::filesystem::create_directories(folder_.path() / "tum" / "rgb");
   write_file(folder_.path() / "tum" / "groundtruth.txt", "0 0 0 0 0 0 0 1\n");
   write_png(folder_.path() / "tum" / "rgb" / "0.png", RgbImage(2, 3));
-  expect_error([&] { load_scenes(folder_ / "tum", Lens(2, 3, 1)); }, {"fov=DEGREES", "vkopple convert"});
+  const Lens lens(2, 3, 1);
+  expect_error([&] { load_scenes(folder_ / "tum", lens); }, {"fov=DEGREES", "vkopple convert"});
+  write_file(folder_ / "tum" / "poses.json", "{}");
+  expect_error([&] { load_scenes(folder_ / "tum", lens); }, {"recording, tum", "--format", "vkopple convert"});
+  expect_error([&] { load_scenes(folder_.path(), lens); }, {"no known format", "--format", "vkopple convert"});
 }
 
 TEST_F(LoadScenesTest, ErrorsNameTheDataSet) {

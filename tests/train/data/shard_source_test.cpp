@@ -176,7 +176,7 @@ TEST_F(ShardSourceTest, SingleImagesOfUnknownCamerasAreEvaluated) {
   single.parts["json"] = to_bytes(R"({"fov": 0.5, "frames": [{}]})");
   DepthAndIds labels{{}, {4, 6}};
   labels.ids.pixels[3] = 2;
-  single.parts["0.exr"] = encode_known_exr(labels);
+  single.parts["0.exr"] = encode_exr(labels);
   write({single});
   const TripletBatch batch = open(1, 1, Reading::kEvaluation).read(0);
   EXPECT_EQ(batch.label[3], 2U);

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,6 +23,9 @@ using test::small_scene;
 using test::TempFolder;
 
 constexpr double kDegree = std::numbers::pi / 180;
+
+/// The angle of view of the small scene.
+const FormatOptions kFov{.settings = {{"fov", "71.6197243913529"}}};
 
 /// One pixel of a colour.
 RgbImage pixel(float red, float green, float blue) {
@@ -134,6 +138,16 @@ TEST_F(AuthorsTest, ReadsFoldersOfTexts) {
   }
 }
 
+TEST_F(AuthorsTest, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  for (int i = 0; i < 100; ++i) write_file(folder_ / fmt::format("cam_pos_{:02}.txt", i), "0 0 0 0 0 0");
+  write_png(folder_ / "00_img.png", RgbImage(1000, 1000));
+  expect_error(
+      [&] {
+        open_scenes(folder_.path(), "", {.settings = {{"frames", "100"}}})->next();
+      },
+      {"row 0: 100 frames of 1000 x 1000 pixels are too many"});
+}
+
 TEST_F(AuthorsTest, NamesWhatIsWrong) {
   const auto wrong = [&](const std::vector<AuthorsRow>& rows, std::initializer_list<std::string> parts) {
     write_file(folder_ / "data_map.pickle", authors_table_pickle(rows));
@@ -157,11 +171,11 @@ TEST_F(AuthorsTest, NamesWhatIsWrong) {
 
 TEST_F(AuthorsTest, WhatIsWrittenReadsTheSame) {
   const SceneData scene = small_scene(1, 4);
-  const auto writer = create_scenes(folder_ / "set", "authors");
+  const auto writer = create_scenes(folder_ / "set", "authors", kFov);
   writer->add(scene);
   writer->finish();
   expect_error([&] { create_scenes(folder_ / "set", "authors"); }, {"data_map.pickle already"});
-  const auto reader = open_scenes(folder_ / "set", "", {.settings = {{"fov", "71.6197243913529"}}});
+  const auto reader = open_scenes(folder_ / "set", "", kFov);
   EXPECT_EQ(reader->count(), 2U);  // frames 0, 1, 2 and 1, 2, 3
   reader->next();
   const auto found = reader->next();
@@ -184,10 +198,18 @@ TEST_F(AuthorsTest, WhatIsWrittenReadsTheSame) {
 TEST_F(AuthorsTest, TheFormatNeedsCamerasAndTriplets) {
   SceneData blind = small_scene(1, 3);
   blind.frames[1].camera.reset();
-  expect_error([&] { create_scenes(folder_ / "a", "authors")->add(blind); }, {"frame 1 has no camera"});
-  const auto writer = create_scenes(folder_ / "b", "authors");
+  expect_error([&] { create_scenes(folder_ / "a", "authors", kFov)->add(blind); }, {"frame 1 has no camera"});
+  const auto writer = create_scenes(folder_ / "b", "authors", kFov);
   writer->add(small_scene(1, 2));
   expect_error([&] { writer->finish(); }, {"three frames"});
+}
+
+TEST_F(AuthorsTest, AnAngleOfViewThatNothingWouldTellIsRefused) {
+  const SceneData scene = small_scene(1, 3);
+  expect_error([&] { create_scenes(folder_ / "set", "authors")->add(scene); },
+               {"made: ", "71.61972439 degrees", "90", "--fov", "--to-option fov=71.61972439"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "set" / "Camera_Images" / "001-000_img.png"));
+  create_scenes(folder_ / "set", "authors", {.settings = {{"fov", "71.61972439"}}})->add(scene);
 }
 
 TEST(AuthorsPictures, DepthHasTwentyFourBits) {

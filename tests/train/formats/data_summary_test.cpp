@@ -34,6 +34,7 @@ TEST(DataSummary, CountsAndMeasures) {
   EXPECT_NEAR(json["labels"]["object_share"]["mean"], 2.0 / 3, 1e-12);
   EXPECT_EQ(json["objects"]["count"]["max"], 2);
   EXPECT_THAT(summary.to_text(), HasSubstr("camera step           0.25\n"));
+  EXPECT_THAT(summary.to_text(), HasSubstr("angle of view         71.62 degrees, vertical\n"));
   EXPECT_THAT(summary.to_text(), HasSubstr("frames a scene        3 to 5, mean 4\n"));
 }
 
@@ -65,6 +66,7 @@ TEST(DataSummary, SaysWhatIsOdd) {
   EXPECT_THAT(mixed.warnings(), ElementsAre(HasSubstr("2 sizes"), HasSubstr("angles of view")));
   EXPECT_THAT(DataSummary().warnings(), ElementsAre("no scenes"));
   EXPECT_THAT(DataSummary().to_text(), HasSubstr("depth                 unknown\n"));
+  EXPECT_THAT(DataSummary().to_text(), HasSubstr("camera turn           unknown\n"));
 }
 
 }  // namespace

@@ -118,6 +118,16 @@ TEST_F(ExampleScenesOf, ScenesFollowOneAnotherThroughAllFiles) {
   EXPECT_EQ(keys, (std::vector<std::string>{"a_tfrecord-000000", "a_tfrecord-000001", "b_tfrecord-000000"}));
 }
 
+TEST_F(ExampleScenesOf, KeysOfLongNamesKeepTheirEnds) {
+  const std::string start(70, 'x');
+  for (const char* end : {".tfrecord-0-of-2", ".tfrecord-1-of-2"})
+    test::write_examples(folder_ / (start + end), {gqn()});
+  const auto reader = open_scenes(folder_.path());
+  const std::string kept(64 - 16, 'x');
+  EXPECT_EQ(reader->next().value().key, kept + "_tfrecord-0-of-2-000000");
+  EXPECT_EQ(reader->next().value().key, kept + "_tfrecord-1-of-2-000000");
+}
+
 TEST_F(ExampleScenesOf, GqnRefusesWhatDoesNotFit) {
   records::Example example = gqn();
   set_floats(example, "depths", std::vector<float>(15, 1));

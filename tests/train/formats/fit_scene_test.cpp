@@ -54,6 +54,18 @@ TEST(FittedScene, OneSideGivesTheOther) {
   EXPECT_EQ(fitted(small_scene(1, 1), {.width = 12}).frames[0].image.height, 8);
 }
 
+TEST(FittedScene, AWidthAloneKeepsTheAngleOfView) {
+  constexpr double kFov = std::numbers::pi / 6;
+  const SceneData scene{.key = "a", .fov = kFov, .frames = {{.image = RgbImage(376, 1241)}}};
+  for (const SceneFit& fit : {SceneFit{.width = 64}, SceneFit{.width = 64, .fov = kFov}}) {
+    const SceneData small = fitted(scene, fit);
+    EXPECT_EQ(small.fov, kFov);
+    EXPECT_EQ(small.frames[0].image.height, 20);
+    EXPECT_EQ(small.frames[0].image.width, 64);
+  }
+  EXPECT_EQ(fitted(scene, {.width = 1}).frames[0].image.height, 1);
+}
+
 TEST(FittedScene, DepthWithGapsIsNotMixed) {
   SceneData scene = small_scene(1, 1);
   scene.frames[0].depth.pixels.assign(24, 2);

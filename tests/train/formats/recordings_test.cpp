@@ -120,6 +120,21 @@ TEST_F(RecordingTest, NamesWhatIsWrong) {
   refuse({"poses.json"});
 }
 
+TEST_F(RecordingTest, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  write_png(folder_ / "0.png", RgbImage(1000, 1000));
+  const auto film = [&](const std::string& first) {
+    std::string frames = frame(0, R"(, "scene": "a")" + first);
+    for (int i = 0; i < 99; ++i) frames += R"(, {"image": "absent.png", "scene": "a"})";
+    return frames;
+  };
+  poses(R"("fov": 1)", film(""));
+  refuse({"0.png: 100 frames of 1000 x 1000 pixels are too many"});
+  write_grey(folder_ / "0.png", 0);
+  write_depth_exr(folder_ / "0.exr", Plane<float>(1000, 1000));
+  poses(R"("fov": 1)", film(R"(, "layers": "0.exr")"));
+  refuse({"0.png: 100 frames of 1000 x 1000 pixels are too many"});
+}
+
 class TumTest : public testing::Test {
  protected:
   TumTest() {
@@ -180,6 +195,15 @@ TEST_F(TumTest, DepthPicturesAreReadWhereThereAreSome) {
   EXPECT_NEAR(open({{"depth_factor", "1000"}})->next()->frames[1].depth.pixels[8],
               5 * scene->frames[1].depth.pixels[8], 1e-5);
   expect_error([&] { open({{"depth", "absent"}}); }, {"absent", "can't be read"});
+}
+
+TEST_F(TumTest, DepthPicturesOfOtherKindsAreRefused) {
+  std::filesystem::create_directory(folder_ / "depth");
+  const std::filesystem::path depth = folder_ / "depth" / "100.593000.png";
+  write_png(depth, Plane<std::uint8_t>(4, 6));
+  expect_error([&] { open()->next(); }, {"depth/100.593000.png", "one channel of 16 bits"});
+  write_grey(depth, 100);
+  expect_error([&] { open()->next(); }, {"depth/100.593000.png", "one channel of 16 bits"});
 }
 
 TEST_F(TumTest, PicturesWithoutAPoseEndAScene) {

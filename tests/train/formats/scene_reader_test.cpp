@@ -7,6 +7,7 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
+#include "train/formats/shard_scene.h"
 
 namespace vkopple {
 namespace {
@@ -63,6 +64,17 @@ TEST(ShardScenes, RememberTheScale) {
   EXPECT_EQ(reader->next()->scale, 1);
 }
 
+TEST(ShardScenes, TooManyPixelsAreRefusedBeforeAllAreDecoded) {
+  const TempFolder folder;
+  SceneData film{.key = "a", .fov = 1};
+  film.frames.push_back({.image = RgbImage(1000, 1000), .camera = CameraPose{}});
+  Sample sample = shard_sample(film);
+  for (int i = 1; i < 100; ++i) sample.parts[std::to_string(i) + ".png"] = {};
+  ShardWriter(folder.path(), "rooms", 1).add(sample);
+  expect_error([&] { open_scenes(folder.path())->next(); },
+               {"a.0.png: 100 frames of 1000 x 1000 pixels are too many"});
+}
+
 TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {
   const TempFolder folder;
   SceneData narrow = small_scene(2, 3);
@@ -74,6 +86,9 @@ TEST(SceneWriters, RefuseWhatTheirFormatCannotHold) {
       {"made: its angle of view is 1 ", "1.25", "--fov"});
   write_file(folder / "rooms-000000.tar", "");
   expect_error([&] { create_scenes(folder.path(), "shards"); }, {folder.path(), "holds shards already"});
+  expect_error([&] { create_scenes(folder / "rooms-000000.tar", "shards"); }, {"holds shards already"});
+  write(folder / "new.tar", "shards", {small_scene(1, 3)});
+  EXPECT_TRUE(open_scenes(folder / "new.tar")->next());
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, WholeFormats, testing::Values("shards", "recording"));
@@ -94,10 +109,12 @@ TEST(SceneFormats, AreDetected) {
   const TempFolder folder;
   expect_error([&] { detect_format(folder / "absent"); }, {"absent", "no such file"});
   expect_error([&] { detect_format(folder.path()); }, {folder.path(), "no known format", "--format"});
+  EXPECT_THROW(detect_format(folder.path()), UsageError);
   write_file(folder / "poses.json", "{}");
   EXPECT_EQ(detect_format(folder.path()).name, "recording");
   write_file(folder / "a.tar", "");
   expect_error([&] { detect_format(folder.path()); }, {"recording, shards", "--format"});
+  EXPECT_THROW(detect_format(folder.path()), UsageError);
   EXPECT_EQ(detect_format(folder / "a.tar").name, "shards");
 }
 
@@ -109,13 +126,22 @@ TEST(OpenScenes, RefusesOptionsThatTheFormatDoesNotKnow) {
       [&] {
         open_scenes(folder / "set", "", {.settings = {{"fov", "3"}}});
       },
-      {"--format-option fov=3", "shards knows scenes_per_shard"});
+      {"--format-option fov=3", "shards knows none"});
+  expect_error(
+      [&] {
+        open_scenes(folder / "set", "", {.settings = {{"scenes_per_shard", "3"}}});
+      },
+      {"--format-option scenes_per_shard=3"});
   expect_error(
       [&] {
         open_scenes(folder / "set", "shards", {.fields = {{"image", "x"}}});
       },
       {"--map image=x", "shards knows none"});
-  expect_error([&] { create_scenes(folder / "new", "shards", {.settings = {{"x", "3"}}}); }, {"x=3"});
+  expect_error(
+      [&] {
+        create_scenes(folder / "new", "shards", {.settings = {{"x", "3"}}});
+      },
+      {"x=3", "shards knows scenes_per_shard"});
 }
 
 TEST(OpenScenes, ChecksWhatComesOut) {
@@ -148,10 +174,13 @@ TEST(FormatOptions, AreParsed) {
   EXPECT_EQ(options.field("depth", "g"), "g");
   EXPECT_EQ(options.choice("word", {"seven", "eight"}, "eight"), "seven");
   EXPECT_EQ(options.text("words", "none"), "none");
-  expect_error([&] { options.integer("n", 1, 6, 2); }, {"n=7", "whole number from 1 to 6"});
+  expect_error([&] { options.integer("n", 1, 6, 2); }, {"--format-option n=7", "whole number from 1 to 6"});
   expect_error([&] { options.integer("x", 1, 6, 2); }, {"x=1.5"});
   expect_error([&] { options.number("word", 1, 6, 2); }, {"word=seven"});
-  expect_error([&] { options.choice("word", {"six"}, "six"); }, {"word=seven", "one of six"});
+  expect_error([&] { options.choice("word", {"six"}, "six"); }, {"--format-option word=seven", "one of six"});
+  const FormatOptions to{.settings = {{"n", "7"}}, .option = "--to-option"};
+  expect_error([&] { to.number("n", 1, 6, 2); }, {"--to-option n=7"});
+  expect_error([&] { to.choice("n", {"six"}, "six"); }, {"--to-option n=7"});
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <system_error>
 
 #include "runtime/error.h"
@@ -50,6 +52,7 @@ class AuthorsReader : public SceneReader {
                     .fov = fov_};
     for (std::size_t i = 0; i < row.stems.size(); ++i) {
       SceneFrame frame = read_frame(row.stems[i], scene.source);
+      check_film_size(row.stems.size(), frame, scene.source);
       frame.camera = row.cameras[i];
       if (!row.objects.empty()) frame.objects = row.objects[i];
       scene.frames.push_back(std::move(frame));
@@ -100,7 +103,10 @@ class AuthorsReader : public SceneReader {
 class AuthorsWriter : public SceneWriter {
  public:
   AuthorsWriter(fs::path folder, const FormatOptions& options)
-      : folder_(std::move(folder)), images_(options.text("images", kImages)), depth_unit_(depth_unit(options)) {
+      : folder_(std::move(folder)),
+        images_(options.text("images", kImages)),
+        fov_(fov(options)),
+        depth_unit_(depth_unit(options)) {
     std::error_code failed;
     fs::create_directories(folder_ / images_, failed);
     if (failed)
@@ -112,6 +118,7 @@ class AuthorsWriter : public SceneWriter {
   }
 
   void add(const SceneData& scene) override {
+    check_fov(scene);
     for (std::size_t i = 0; i < scene.frames.size(); ++i) write_frame(scene, i);
     for (const std::array<int, 3>& triplet : strided_triplets(static_cast<int>(scene.frames.size()))) {
       AuthorsRow row;
@@ -135,6 +142,16 @@ class AuthorsWriter : public SceneWriter {
   }
 
  private:
+  /// The files don't hold it, so nothing would tell those who read them.
+  void check_fov(const SceneData& scene) const {
+    constexpr double kDegree = std::numbers::pi / 180;
+    if (std::abs(scene.fov - fov_) <= 1e-6) return;
+    throw Error(fmt::format(
+        "{}: its angle of view is {:.10g} degrees and the data set's {:.10g}; crop pictures by --fov, "
+        "or say --to-option fov={:.10g}, which whoever reads the data set must be told",
+        one_line(scene.source, 4096), scene.fov / kDegree, fov_ / kDegree, scene.fov / kDegree));
+  }
+
   static std::string stem(const SceneData& scene, std::size_t frame) {
     return fmt::format("{}-{:03}", scene.key, frame);
   }
@@ -150,7 +167,7 @@ class AuthorsWriter : public SceneWriter {
 
   fs::path folder_;
   std::string images_;
-  double depth_unit_;
+  double fov_, depth_unit_;
   std::vector<AuthorsRow> rows_;
 };
 
@@ -166,12 +183,13 @@ bool recognises(const fs::path& path) {
 }  // namespace
 
 SceneFormat authors_format() {
+  const NamedHelp images{"images", fmt::format("the folder of pictures, {} unless given", kImages)};
+  const NamedHelp angle{"fov", fmt::format("vertical angle of view in degrees, {} unless given", kFovDegrees)};
+  const NamedHelp unit{"depth_unit", "scene units in one unit of the depth pictures, 1 unless given"};
   return {.name = "authors",
           .about = fmt::format("the authors' rooms: {}, or cam_pos_STEM.txt, and pictures", kTable),
-          .settings = {{"images", fmt::format("the folder of pictures, {} unless given", kImages)},
-                       {"fov", fmt::format("vertical angle of view in degrees, {} unless given", kFovDegrees)},
-                       {"depth_unit", "scene units in one unit of the depth pictures, 1 unless given"},
-                       {"frames", "of a scene, where there is no table: 3 unless given"}},
+          .settings = {images, angle, unit, {"frames", "of a scene, where there is no table: 3 unless given"}},
+          .write_settings = {images, angle, unit},
           .fields = {},
           .recognises = recognises,
           .open = [](const fs::path& path, const FormatOptions& options) -> std::unique_ptr<SceneReader> {

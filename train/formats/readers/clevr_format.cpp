@@ -71,6 +71,7 @@ SceneFormat clevr_format() {
   return {.name = "clevr",
           .about = "CLEVR with masks, of the multi-object datasets: a TFRecord file of single images",
           .settings = {},
+          .write_settings = {},
           .fields = field_help(kFeatures),
           .recognises =
               [](const std::filesystem::path& path) {

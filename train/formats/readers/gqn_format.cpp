@@ -103,6 +103,7 @@ SceneFormat gqn_format() {
           .about = "rooms of GQN as O3V renders them: TFRecord files, plain or of GZIP",
           .settings = {{"fov", "vertical angle of view in degrees, by default 45"},
                        {"scale", "our units in one of theirs, by default 0.7"}},
+          .write_settings = {},
           .fields = field_help(kFeatures),
           .recognises =
               [](const std::filesystem::path& path) {

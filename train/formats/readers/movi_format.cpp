@@ -140,6 +140,7 @@ SceneFormat movi_format() {
   return {.name = "movi",
           .about = "films of Kubric, MOVi-E and its siblings: TFRecord files of TensorFlow Datasets",
           .settings = {{"scale", "our units in a metre, by default 0.4"}},
+          .write_settings = {},
           .fields = field_help(kFeatures),
           .recognises =
               [](const std::filesystem::path& path) {

@@ -177,7 +177,7 @@ class RecordingWriter : public SceneWriter {
     write_png(folder_ / (name + ".png"), frame.image);
     if (frame.camera) json["camera"] = *frame.camera;
     if (!frame.depth.pixels.empty() || !frame.ids.pixels.empty()) {
-      write_file(folder_ / (name + ".exr"), encode_known_exr({frame.depth, frame.ids}));
+      write_file(folder_ / (name + ".exr"), encode_exr({frame.depth, frame.ids}));
       json["layers"] = name + ".exr";
     }
     if (frame.objects) {
@@ -200,6 +200,7 @@ SceneFormat recording_format() {
   return {.name = "recording",
           .about = "a folder of pictures with their cameras in poses.json",
           .settings = cutting_help(),
+          .write_settings = {},
           .fields = {},
           .recognises =
               [](const fs::path& path) {

@@ -55,14 +55,16 @@ SceneFormat shards_format() {
   return {
       .name = "shards",
       .about = "tar shards in the WebDataset convention, as generate writes them",
-      .settings = {{"scenes_per_shard", "in writing: scenes in one tar file, 256 unless given"}},
+      .settings = {},
+      .write_settings = {{"scenes_per_shard", "scenes in one tar file, 256 unless given"}},
       .fields = {},
       .recognises = recognises,
       .open = [](const fs::path& path, const FormatOptions&) -> std::unique_ptr<SceneReader> {
         return std::make_unique<ShardSceneReader>(path);
       },
       .create = [](const fs::path& path, const FormatOptions& options) -> std::unique_ptr<SceneWriter> {
-        if (recognises(path))
+        std::error_code failed;
+        if (fs::exists(path, failed) && recognises(path))
           throw Error(fmt::format("{} holds shards already; remove the old data set or choose another folder",
                                   quote(path.string(), 4096)));
         return std::make_unique<ShardSceneWriter>(path, options);

@@ -167,6 +167,7 @@ SceneFormat tum_format() {
   return {.name = "tum",
           .about = "a recording: pictures named by timestamp and a trajectory, timestamp tx ty tz qx qy qz qw",
           .settings = settings,
+          .write_settings = {},
           .fields = {},
           .recognises = recognises,
           .open = open};

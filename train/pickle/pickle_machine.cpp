@@ -400,6 +400,8 @@ void PickleMachine::call() {
   }
   const auto value = call_builtin(arena_, global.text(), arguments.items());
   if (!value) input_.fail(fmt::format("{} with arguments that are not understood", quote(global.text())));
+  // It is a copy of its argument, which one instruction of a few bytes may ask for again and again.
+  charge(value->is(PickleKind::kBytes) ? value->text().size() / sizeof(PickleValue) : value->items().size());
   push(*value);
 }
 
@@ -410,9 +412,13 @@ void PickleMachine::build() {
   node->state = state;
 }
 
+void PickleMachine::charge(std::size_t count) {
+  if (values_left_ < count) input_.fail("more values than are allowed; split the file, or is it damaged?");
+  values_left_ -= count;
+}
+
 void PickleMachine::push(PickleValue value) {
-  if (values_left_ == 0) input_.fail("more values than are allowed; split the file, or is it damaged?");
-  --values_left_;
+  charge(1);
   stack_.push_back(value);
 }
 

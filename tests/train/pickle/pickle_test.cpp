@@ -232,6 +232,31 @@ TEST(Pickle, Limits) {
   EXPECT_NO_THROW(Pickle(bytes_of(doubled + "."), "p"));
 }
 
+/// A builtin copies its argument, which a pickle need not repeat to have it copied again.
+TEST(Pickle, CountsWhatBuiltinsCopy) {
+  struct Case {
+    std::string global, argument, more;
+    int most;  ///< copies within 1000 values
+  };
+  std::string ones = "(", pairs = "I1\nI2\n\x86p2\n0(";
+  for (int i = 0; i < 100; ++i) ones += "I1\n";
+  for (int i = 0; i < 50; ++i) pairs += "g2\n";
+  const std::string text = std::string("X\x40\x06\0\0", 5) + std::string(1600, 'a');
+  const std::array cases{
+      Case{"c_codecs\nencode\n", text, "Vlatin1\n", 9}, Case{"c__builtin__\nbytes\n", text, "Vlatin1\n", 9},
+      Case{"c__builtin__\nset\n", ones + "l", "", 8}, Case{"ccollections\nOrderedDict\n", pairs + "l", "", 9}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.global);
+    const auto copied = [&](int times) {
+      std::string pickle = "(" + c.global + "p0\n0" + c.argument + "p1\n0";
+      for (int i = 0; i < times; ++i) pickle += "g0\n(g1\n" + c.more + "tR";
+      return pickle + "t.";
+    };
+    EXPECT_NO_THROW(Pickle(bytes_of(copied(c.most)), "p", {}, {.max_values = 1000}));
+    expect_refused(copied(c.most + 1), {"more values than are allowed"}, {.max_values = 1000});
+  }
+}
+
 /// Whatever is done to a byte, it is read or refused.
 TEST(Pickle, SurvivesEveryDamagedByte) {
   size_t refused = 0;

@@ -74,14 +74,6 @@ std::map<std::string, std::string> names_of(const TensorFile& file, const Import
   return by_model_name;
 }
 
-/// The shape that PyTorch has for a tensor of this name and shape. The authors' learned motion of pixels is
-/// made of 1x1 convolutions, ours of products.
-StoredShape shape_in_torch(const std::string& name, StoredShape shape) {
-  if (name.starts_with("warping_model.warpnet2") && name.ends_with(".weight") && shape.size() == 2)
-    shape.insert(shape.end(), 2, 1);
-  return shape;
-}
-
 /// Reads what the layout has, and refuses what it has not.
 class WeightsReader {
  public:
@@ -110,7 +102,7 @@ class WeightsReader {
     const std::string in_file = found->second;
     names_.erase(found);
     const StoredShape& given = file_.shape(in_file);
-    if (given != shape && given != shape_in_torch(name, shape)) {
+    if (given != shape) {
       throw Error(
           fmt::format("{}: {} has the shape {}, its configuration asks for {}; was it trained with another?",
                       shown(file_), quote(in_file), to_string(given), to_string(shape)));
@@ -176,12 +168,10 @@ void export_weights(const std::filesystem::path& path, const ModelWeights& weigh
     metadata[kFormatKey] = kBgrFormat;
     swap_red_and_blue(tensors);
   }
-  if (!has_torch_ending(path)) {
+  if (has_torch_ending(path))
+    write_torch(path, metadata, tensors);
+  else
     write_safetensors(path, metadata, tensors);
-    return;
-  }
-  for (auto& [name, tensor] : tensors) tensor.shape = shape_in_torch(name, tensor.shape);
-  write_torch(path, metadata, tensors);
 }
 
 }  // namespace vkopple

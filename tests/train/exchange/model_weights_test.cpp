@@ -85,18 +85,6 @@ TEST_F(ModelWeightsTest, ExportedColoursAreWhatIsAskedFor) {
   expect_error([&] { read_model_weights(file("bgr.safetensors")); }, {"bgr.safetensors", "BGR"});
 }
 
-TEST_F(ModelWeightsTest, PointwiseProductsAreConvolutionsInTorch) {
-  const std::vector<float> values(6, 1.0F);
-  for (const char* name :
-       {"warping_model.warpnet2.conv1.weight", "warping_model.warpnet2_bground.conv4.weight"}) {
-    weights_.tensors.emplace(name, StoredTensor::of({3, 2}, std::span(values)));
-    export_weights(file("a.pt"), weights_, false);
-    EXPECT_EQ(TorchFile(file("a.pt")).shape(name), (StoredShape{3, 2, 1, 1}));
-    export_weights(file("a.safetensors"), weights_, false);
-    EXPECT_EQ(SafetensorsFile(file("a.safetensors")).shape(name), (StoredShape{3, 2}));
-  }
-}
-
 TEST_F(ModelWeightsTest, ACheckpointIsCompleteAndStartsAdamAnew) {
   write_model_checkpoint(file("c.safetensors"), weights_);
   const SafetensorsFile checkpoint(file("c.safetensors"));

@@ -14,6 +14,7 @@ namespace {
 
 using test::expect_failure;
 using test::expect_success;
+using test::Outcome;
 using test::run_vkopple;
 using test::TempFolder;
 
@@ -44,12 +45,18 @@ TEST_F(ExchangeCommands, ARoundTripThroughTheCommands) {
   }
 }
 
+/// Of two stages: with the last, whose beginning the imported weights are at.
 TEST_F(ExchangeCommands, TrainingGoesOnFromWhatWasImported) {
   write_torch(file("foreign.pt"), {}, weights_.tensors);
   std::ofstream(file("config.json")) << weights_.header.config.to_json();
   expect_success(run_vkopple(
       {"import", file("foreign.pt"), file("new/latest.safetensors"), "--config", file("config.json")}));
-  expect_success(run_vkopple({"train", "--out", file("new"), "--data", "rooms:1", "--steps", "1", "--resume"}));
+  const Outcome outcome =
+      run_vkopple({"train", "--out", file("new"), "--data", "rooms:1", "--steps", "6", "--resume"});
+  expect_success(outcome);
+  const std::string said = outcome.output + outcome.errors;
+  EXPECT_NE(said.find("stage all: steps 6 to 6"), std::string::npos) << said;
+  EXPECT_EQ(said.find("stage depth"), std::string::npos) << said;
 }
 
 TEST_F(ExchangeCommands, TheExampleHasTheModelsShapes) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -13,6 +13,7 @@
 #include "train/model_layout.h"
 #include "train/quote.h"
 #include "train/safetensors.h"
+#include "train/stage_plan.h"
 
 namespace vkopple {
 namespace {
@@ -54,9 +55,11 @@ Source source_of_foreign(const TensorFile& file, const ImportOptions& options) {
                     "with by --config",
                     shown(file)));
   }
-  // Of the last stage, so that its networks count as trained.
-  const uint64_t last = options.config->stages().size() - 1;
-  return {{*options.config, {.stage = last, .data = "imported"}}, options.bgr};
+  // At the beginning of the last stage: its networks count as trained, and training goes on with it.
+  const StagePlan plan(*options.config, std::nullopt);
+  const TrainingPosition position{
+      .step = plan.stages().back().begin, .stage = plan.stages().size() - 1, .data = "imported"};
+  return {{*options.config, position}, options.bgr};
 }
 
 /// The file's name of every tensor, by the model's.

@@ -102,10 +102,16 @@ TEST_F(ModelWeightsTest, ForeignFilesNeedAConfiguration) {
   const ModelWeights back = imported("foreign.pt", foreign_);
   expect_equal(back.tensors, weights_.tensors);
   EXPECT_EQ(back.header.config, test::tiny_config());
-  EXPECT_EQ(back.header.position.step, 0U);
-  EXPECT_EQ(back.header.position.stage, 1U);
   export_weights(file("own.pt"), weights_, false);
   expect_error([&] { imported("own.pt", foreign_); }, {"own.pt", "leave --config out"});
+}
+
+TEST_F(ModelWeightsTest, ForeignWeightsAreWhereTheLastStageBegins) {
+  write_foreign();
+  EXPECT_EQ(imported("foreign.pt", foreign_).header.position,
+            (TrainingPosition{.step = 5, .stage = 1, .stage_step = 0, .data = "imported"}));
+  foreign_.config->training.stages.resize(1);
+  EXPECT_EQ(imported("foreign.pt", foreign_).header.position, (TrainingPosition{.data = "imported"}));
 }
 
 TEST_F(ModelWeightsTest, ForeignNamesAndTypes) {

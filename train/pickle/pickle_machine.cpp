@@ -383,10 +383,11 @@ bool PickleMachine::object(std::uint8_t op) {
 void PickleMachine::push_global(std::string_view module, std::string_view name) {
   const std::string full = fmt::format("{}.{}", module, name);
   if (!is_builtin_global(full) && !allowed_.contains(full)) {
-    const bool pandas = module.starts_with("pandas.");
+    const bool pandas = full.starts_with("pandas.");
     input_.fail(fmt::format("refers to {}, which is refused: {}", quote(full),
-                            pandas ? "of a table of pandas save df.to_dict('list') instead, a dict of lists"
-                                   : "nothing but plain data is read from a pickle"));
+                            pandas
+                                ? "save the table as a dict of lists: pickle.dump(table.to_dict('list'), file)"
+                                : "nothing but plain data is read from a pickle"));
   }
   push_text(PickleKind::kGlobal, full);
 }

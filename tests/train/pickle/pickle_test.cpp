@@ -141,6 +141,7 @@ TEST(Pickle, RefusesWhatIsNotPlainByName) {
   expect_refused("cos\nsystem\n(S'true'\ntR.", {"p.pickle: byte 0: refers to 'os.system', which is refused"});
   expect_refused("(dcpandas.core.frame\nDataFrame\n.",
                  {"byte 2", "pandas.core.frame.DataFrame", "to_dict('list')"});
+  expect_refused("cpandas\nDataFrame\n.", {"byte 0", "'pandas.DataFrame'", "to_dict('list')"});
   expect_refused("\x80\x04\x8c\x02os\x8c\x06system\x93.", {"byte 14", "'os.system'"});
   expect_refused("callowed\ng\n.", {"'allowed.g'"});
   expect_refused("callowed.f\nx\n.", {"'allowed.f.x'"});

@@ -101,20 +101,12 @@ void write_numbers(PickleWriter& out, const std::array<double, N>& values) {
 
 std::vector<AuthorsRow> read_authors_table(const fs::path& path) {
   const std::vector<std::byte> bytes = read_file(path, kMaxBytes);
-  try {
-    const Pickle pickle(bytes, path.string(), numpy_globals());
-    const PickleView table = pickle.view();
-    std::vector<AuthorsRow> rows;
-    const std::size_t count = table["frame1"].size();
-    for (std::size_t row = 0; row < count; ++row) rows.push_back(read_row(table, row));
-    return rows;
-  } catch (const Error& problem) {
-    if (std::string_view(problem.what()).find("pandas") == std::string_view::npos) throw;
-    throw Error(
-        fmt::format("{}; the table is pandas' own kind of object: save it again as a dict of lists, by "
-                    "pickle.dump(table.to_dict('list'), file)",
-                    problem.what()));
-  }
+  const Pickle pickle(bytes, path.string(), numpy_globals());
+  const PickleView table = pickle.view();
+  std::vector<AuthorsRow> rows;
+  const std::size_t count = table["frame1"].size();
+  for (std::size_t row = 0; row < count; ++row) rows.push_back(read_row(table, row));
+  return rows;
 }
 
 std::vector<AuthorsRow> read_authors_texts(const fs::path& folder, std::size_t frames) {

@@ -40,14 +40,9 @@ void require_sense(const Options& o) {
   if (o.bgr && !o.example.empty()) throw UsageError("--example shows red, green, blue; leave out --bgr");
 }
 
-/// Of a run its latest checkpoint.
-std::filesystem::path checkpoint_of(const std::string& model) {
-  return std::filesystem::is_directory(model) ? RunFolder(model).latest() : std::filesystem::path(model);
-}
-
 void run(const Options& o) {
   require_sense(o);
-  const std::filesystem::path checkpoint = checkpoint_of(o.model);
+  const std::filesystem::path checkpoint = named_checkpoint(o.model);
   const ModelWeights weights = read_model_weights(checkpoint);
   if (o.out.ends_with(kOnnx))
     export_onnx(o.out, weights, o.batch, o.bgr);

@@ -194,6 +194,15 @@ TEST(OnnxExport, TheBackgroundsLogitsAreOneNumber) {
   EXPECT_EQ(ints(constant(model.graph(), background.input(1))), (Ints{2, 1, 16, 16}));
 }
 
+TEST(OnnxExport, RefusesRotationInSpace) {
+  ModelWeights weights = test::drawn_weights();
+  weights.header.config.model.orientation = Orientation::kEuler;
+  const TempFolder folder;
+  test::expect_error([&] { export_onnx(folder / "m.onnx", weights, 1, false); },
+                     {"m.onnx", "3D rotation", ".onnx", ".safetensors"});
+  EXPECT_EQ(folder.entries(), 0U);
+}
+
 /// Values of small graphs, and the nodes that they become.
 class OnnxGraphTest : public testing::Test {
  protected:

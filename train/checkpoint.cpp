@@ -20,7 +20,6 @@ namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-constexpr const char* kFormat = "vkopple checkpoint";
 constexpr const char* kVersion = "1";
 
 std::string shown(const std::filesystem::path& path) { return one_line(path.string()); }
@@ -101,9 +100,9 @@ std::map<std::string, StoredShape> weight_shapes(const ModelLayout& layout) {
 CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::filesystem::path& path) {
   const std::string format = metadata_text(metadata, path, "format");
   const std::string version = metadata_text(metadata, path, "format_version");
-  if (format != kFormat || version != kVersion)
+  if (format != kCheckpointFormat || version != kVersion)
     throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(path),
-                            quote(format), quote(version), kFormat, kVersion));
+                            quote(format), quote(version), kCheckpointFormat, kVersion));
   const auto number = [&](const char* key) { return metadata_number(metadata, path, key); };
   CheckpointHeader header;
   header.config = Config::parse(metadata_text(metadata, path, "config"), path.string() + ": config");
@@ -120,7 +119,7 @@ CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::fi
 
 Metadata checkpoint_metadata(const CheckpointHeader& header) {
   const TrainingPosition& position = header.position;
-  return {{"format", kFormat},
+  return {{"format", kCheckpointFormat},
           {"format_version", kVersion},
           {"config", header.config.to_json()},
           {"step", std::to_string(position.step)},

@@ -15,6 +15,9 @@ namespace vkopple {
 // Checkpoints: safetensors files (docs/checkpoints.md). Every function throws Error naming the file, and the
 // tensor or key.
 
+/// What "format" is in a checkpoint's metadata.
+inline constexpr const char* kCheckpointFormat = "vkopple checkpoint";
+
 /// Writes everything that going on needs; the file appears when it is complete. Refuses what require_usable
 /// does.
 void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,

@@ -34,7 +34,11 @@ struct Source {
 };
 
 /// Whether the file's metadata are ours; other writers may have a "format" too.
-bool says_its_model(const TensorFile& file) { return file.metadata().contains("format_version"); }
+bool says_its_model(const TensorFile& file) {
+  const auto format = file.metadata().find(kFormatKey);
+  return format != file.metadata().end() &&
+         (format->second == kCheckpointFormat || format->second == kBgrFormat);
+}
 
 Source source_of_own(const TensorFile& file, const ImportOptions& options) {
   Metadata metadata = file.metadata();
@@ -44,7 +48,7 @@ Source source_of_own(const TensorFile& file, const ImportOptions& options) {
   if (options.bgr && !bgr)
     throw UsageError(
         fmt::format("{}: says that its colours are red, green, blue; leave --bgr out", shown(file)));
-  if (bgr) metadata[kFormatKey] = checkpoint_metadata({}).at(kFormatKey);
+  if (bgr) metadata[kFormatKey] = kCheckpointFormat;
   return {parse_checkpoint_header(metadata, file.path()), bgr};
 }
 

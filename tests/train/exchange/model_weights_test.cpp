@@ -106,6 +106,16 @@ TEST_F(ModelWeightsTest, ForeignFilesNeedAConfiguration) {
   expect_error([&] { imported("own.pt", foreign_); }, {"own.pt", "leave --config out"});
 }
 
+/// Of others' files too the metadata may have a "format", and say its version.
+TEST_F(ModelWeightsTest, AFileIsOursByItsFormat) {
+  write_safetensors(file("other.safetensors"), {{"format", "pt"}, {"format_version", "1"}}, weights_.tensors);
+  expect_equal(imported("other.safetensors", foreign_).tensors, weights_.tensors);
+  for (const char* format : {"vkopple checkpoint", "vkopple weights in BGR"}) {
+    write_safetensors(file("own.safetensors"), {{"format", format}}, weights_.tensors);
+    expect_error([&] { imported("own.safetensors"); }, {"own.safetensors", "format_version"});
+  }
+}
+
 TEST_F(ModelWeightsTest, ForeignWeightsAreWhereTheLastStageBegins) {
   write_foreign();
   EXPECT_EQ(imported("foreign.pt", foreign_).header.position,

@@ -1,9 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <set>
 #include <span>
 #include <string>

@@ -10,6 +10,7 @@
 #include "tools/other_file.h"
 #include "tools/set_option.h"
 #include "train/exchange/model_weights.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/run_folder.h"
 
 namespace vkopple {

@@ -9,6 +9,7 @@
 
 #include "runtime/error.h"
 #include "train/exchange/colour_order.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/exchange/torch_file.h"
 #include "train/model_layout.h"
 #include "train/quote.h"

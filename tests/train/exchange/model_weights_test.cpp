@@ -10,6 +10,7 @@
 #include "tests/support/temp_folder.h"
 #include "tests/support/tiny_model.h"
 #include "train/atomic_file.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/exchange/torch_file.h"
 #include "train/model_layout.h"
 #include "train/safetensors.h"

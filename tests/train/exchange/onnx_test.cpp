@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "graph/ops/leaky_relu.h"
 #include "onnx.pb.h"
@@ -16,6 +17,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
+#include "train/exchange/colour_order.h"
 #include "train/exchange/onnx/onnx_export.h"
 #include "train/exchange/onnx/onnx_graph.h"
 #include "train/exchange/onnx/onnx_translators.h"
@@ -158,16 +160,23 @@ TEST(OnnxExport, OrdersTheGates) {
   }
 }
 
+/// In what sees the image, and nowhere else.
 TEST(OnnxExport, SwapsColours) {
   const ModelWeights weights = test::drawn_weights();
-  const std::string name = "depth_model.depth_net.inc.conv.0.weight";
-  for (const bool bgr : {false, true}) {
-    const onnx::ModelProto model = exported(weights, 1, bgr);
-    for (const auto& constant : model.graph().initializer()) {
-      if (constant.name() != name) continue;
-      const auto& bytes = weights.tensors.at(name).bytes;
-      EXPECT_EQ(std::memcmp(constant.raw_data().data(), bytes.data(), bytes.size()) == 0, !bgr);
-    }
+  std::map<std::string, StoredTensor> swapped = weights.tensors;
+  swap_red_and_blue(swapped);
+  const auto bytes = [](const StoredTensor& tensor) {
+    return std::string(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+  };
+  const onnx::ModelProto rgb = exported(weights), bgr = exported(weights, 1, true);
+  for (const char* name :
+       {"depth_model.depth_net.inc.conv.0.weight", "segmentation_model.seg_net.seg_net.inc.conv.0.weight",
+        "depth_model.depth_net.outc.conv.weight"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(constant(rgb.graph(), name).raw_data(), bytes(weights.tensors.at(name)));
+    EXPECT_EQ(constant(bgr.graph(), name).raw_data(), bytes(swapped.at(name)));
+    const bool sees_images = std::string_view(name).find("inc") != std::string_view::npos;
+    EXPECT_EQ(constant(bgr.graph(), name).raw_data() != constant(rgb.graph(), name).raw_data(), sees_images);
   }
 }
 

@@ -20,7 +20,6 @@ namespace {
 
 using Metadata = std::map<std::string, std::string>;
 
-constexpr const char* kFormat = "vkopple checkpoint";
 constexpr const char* kVersion = "1";
 
 std::string shown(const std::filesystem::path& path) { return one_line(path.string()); }
@@ -73,9 +72,10 @@ bool is_never_negative(const std::string& name) {
          (name.starts_with("adam/") && name.find("/v/") != std::string::npos);
 }
 
+/// Of a file whose tensors were checked.
 void read_entries(const SafetensorsFile& file, ModelStore& store, const std::vector<LayoutEntry>& entries) {
   for (const LayoutEntry& entry : entries) {
-    const std::vector<float> values = file.read_floats(entry.name, entry.stored_shape());
+    const std::vector<float> values = file.read_floats(entry.name);
     require_usable(entry.name, values, file.path());
     store.write(entry, values);
   }
@@ -100,9 +100,9 @@ std::map<std::string, StoredShape> weight_shapes(const ModelLayout& layout) {
 CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::filesystem::path& path) {
   const std::string format = metadata_text(metadata, path, "format");
   const std::string version = metadata_text(metadata, path, "format_version");
-  if (format != kFormat || version != kVersion)
+  if (format != kCheckpointFormat || version != kVersion)
     throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(path),
-                            quote(format), quote(version), kFormat, kVersion));
+                            quote(format), quote(version), kCheckpointFormat, kVersion));
   const auto number = [&](const char* key) { return metadata_number(metadata, path, key); };
   CheckpointHeader header;
   header.config = Config::parse(metadata_text(metadata, path, "config"), path.string() + ": config");
@@ -119,7 +119,7 @@ CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::fi
 
 Metadata checkpoint_metadata(const CheckpointHeader& header) {
   const TrainingPosition& position = header.position;
-  return {{"format", kFormat},
+  return {{"format", kCheckpointFormat},
           {"format_version", kVersion},
           {"config", header.config.to_json()},
           {"step", std::to_string(position.step)},
@@ -141,7 +141,7 @@ void save_checkpoint(const std::filesystem::path& path, const ModelStore& store,
   for (const auto* entries : {&store.layout().weights(), &store.layout().optimiser()}) {
     for (const LayoutEntry& entry : *entries) {
       const std::vector<float> values = store.read(entry);
-      require_finite(entry.name, values, path);
+      require_usable(entry.name, values, path);
       tensors.emplace(entry.name, StoredTensor::of(entry.stored_shape(), std::span(values)));
     }
   }

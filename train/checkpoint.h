@@ -15,8 +15,11 @@ namespace vkopple {
 // Checkpoints: safetensors files (docs/checkpoints.md). Every function throws Error naming the file, and the
 // tensor or key.
 
-/// Writes everything that going on needs; the file appears when it is complete. Refuses weights that are not
-/// finite.
+/// What "format" is in a checkpoint's metadata.
+inline constexpr const char* kCheckpointFormat = "vkopple checkpoint";
+
+/// Writes everything that going on needs; the file appears when it is complete. Refuses what require_usable
+/// does.
 void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
                      const TrainingPosition& position);
 
@@ -31,8 +34,8 @@ CheckpointHeader parse_checkpoint_header(const std::map<std::string, std::string
                                          const std::filesystem::path& path);
 std::map<std::string, std::string> checkpoint_metadata(const CheckpointHeader& header);
 
-/// Refuses values of a tensor of that name that no checkpoint may hold: none that are not finite, and no
-/// negative variances.
+/// Refuses values that no checkpoint may hold in a tensor of that name: such as are not finite, and negative
+/// ones of a running variance, of Adam's means of squares, and of the loss scale's state.
 void require_usable(const std::string& name, std::span<const float> values, const std::filesystem::path& path);
 
 /// Fills a store with all of a checkpoint, to go on training. The checkpoint must be of this configuration.

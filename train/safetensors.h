@@ -8,6 +8,7 @@
 
 #include "train/file_descriptor.h"
 #include "train/stored_tensor.h"
+#include "train/tensor_file.h"
 
 namespace vkopple {
 
@@ -16,20 +17,20 @@ namespace vkopple {
 /// Layout: 8 bytes little-endian header length (at most 100 MB), a JSON object {name: {dtype, shape,
 /// data_offsets}} with an optional "__metadata__" of strings, then the data, which the tensors tile without
 /// hole or overlap. Whatever breaks this is an Error that names the file, the tensor and what is wrong.
-class SafetensorsFile {
+class SafetensorsFile : public TensorFile {
  public:
   explicit SafetensorsFile(std::filesystem::path path);
 
-  const std::filesystem::path& path() const { return path_; }
-  const std::map<std::string, std::string>& metadata() const { return metadata_; }
-  std::vector<std::string> names() const;  ///< sorted
+  const std::filesystem::path& path() const override { return path_; }
+  const std::map<std::string, std::string>& metadata() const override { return metadata_; }
+  std::vector<std::string> names() const override;
+  const StoredShape& shape(const std::string& name) const override { return entry(name).shape; }
+  StoredTensor read(const std::string& name) const override;
+
   bool contains(const std::string& name) const { return entries_.contains(name); }
-
-  /// These and all below throw an Error naming file and tensor when there is no such tensor.
+  /// This and all below throw an Error naming file and tensor when there is no such tensor.
   StoredType dtype(const std::string& name) const { return entry(name).dtype; }
-  const StoredShape& shape(const std::string& name) const { return entry(name).shape; }
 
-  StoredTensor read(const std::string& name) const;
   std::vector<float> read_floats(const std::string& name) const;
   std::vector<double> read_doubles(const std::string& name) const;
   std::vector<std::int64_t> read_ints(const std::string& name) const;

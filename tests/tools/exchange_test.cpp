@@ -5,6 +5,7 @@
 #include "tests/support/exchange_model.h"
 #include "tests/support/program.h"
 #include "tests/support/temp_folder.h"
+#include "train/atomic_file.h"
 #include "train/exchange/model_weights.h"
 #include "train/exchange/torch_file.h"
 #include "train/safetensors.h"
@@ -14,8 +15,11 @@ namespace {
 
 using test::expect_failure;
 using test::expect_success;
+using test::Outcome;
 using test::run_vkopple;
 using test::TempFolder;
+
+constexpr size_t kLargest = size_t{16} << 20;
 
 /// The folder of a run with a checkpoint of drawn weights.
 class ExchangeCommands : public testing::Test {
@@ -44,12 +48,18 @@ TEST_F(ExchangeCommands, ARoundTripThroughTheCommands) {
   }
 }
 
+/// Of two stages: with the last, whose beginning the imported weights are at.
 TEST_F(ExchangeCommands, TrainingGoesOnFromWhatWasImported) {
   write_torch(file("foreign.pt"), {}, weights_.tensors);
   std::ofstream(file("config.json")) << weights_.header.config.to_json();
   expect_success(run_vkopple(
       {"import", file("foreign.pt"), file("new/latest.safetensors"), "--config", file("config.json")}));
-  expect_success(run_vkopple({"train", "--out", file("new"), "--data", "rooms:1", "--steps", "1", "--resume"}));
+  const Outcome outcome =
+      run_vkopple({"train", "--out", file("new"), "--data", "rooms:1", "--steps", "6", "--resume"});
+  expect_success(outcome);
+  const std::string said = outcome.output + outcome.errors;
+  EXPECT_NE(said.find("stage all: steps 6 to 6"), std::string::npos) << said;
+  EXPECT_EQ(said.find("stage depth"), std::string::npos) << said;
 }
 
 TEST_F(ExchangeCommands, TheExampleHasTheModelsShapes) {
@@ -65,6 +75,22 @@ TEST_F(ExchangeCommands, TheExampleHasTheModelsShapes) {
     EXPECT_NEAR(masks[pixel] + masks[256 + pixel] + masks[512 + pixel], 1, 1e-5) << pixel;
   const auto images = example.read_floats("images", {2, 3, 16, 16});
   EXPECT_NE(images.front(), images.back());
+}
+
+TEST_F(ExchangeCommands, WhatIsReadIsNotOverwritten) {
+  const auto before = read_file(latest(), kLargest);
+  std::filesystem::create_symlink(latest(), file("soft.safetensors"));
+  std::filesystem::create_hard_link(latest(), file("hard.safetensors"));
+  for (const std::string& out :
+       {latest(), run() + "/../run/latest.safetensors", file("soft.safetensors"), file("hard.safetensors")}) {
+    SCOPED_TRACE(out);
+    expect_failure(run_vkopple({"export", run(), out}), 2, {out, "name another"});
+    expect_failure(run_vkopple({"export", latest(), file("m.onnx"), "--example", out}), 2,
+                   {out, "name another"});
+    expect_failure(run_vkopple({"import", latest(), out}), 2, {out, "name another"});
+  }
+  EXPECT_EQ(read_file(latest(), kLargest), before);
+  EXPECT_FALSE(std::filesystem::exists(file("m.onnx")));
 }
 
 TEST_F(ExchangeCommands, WrongUse) {

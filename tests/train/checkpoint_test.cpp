@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 
@@ -192,13 +193,21 @@ TEST_F(CheckpointFile, RefusesWhatIsCutShort) {
   expect_error([&] { load_model(test_device(), folder_ / "absent"); }, {"absent"});
 }
 
-TEST_F(CheckpointFile, WeightsThatAreNoNumbersAreNotWritten) {
+TEST_F(CheckpointFile, WhatCouldNotBeLoadedIsNotWritten) {
   const auto before = read_file(path(), kLargestFile);
-  const LayoutEntry& entry = store_.layout().weights().front();
-  store_.write(entry, std::vector<float>(static_cast<size_t>(entry.shape.elements()),
-                                         std::numeric_limits<float>::infinity()));
-  expect_error([&] { save_checkpoint(path(), store_, small_config(), kPosition); },
-               {"a.safetensors", entry.name});
+  const auto expect_refusal = [&](const LayoutEntry& entry, float value) {
+    const std::vector<float> kept = store_.read(entry);
+    store_.write(entry, std::vector<float>(kept.size(), value));
+    expect_error([&] { save_checkpoint(path(), store_, small_config(), kPosition); },
+                 {"a.safetensors", entry.name});
+    store_.write(entry, kept);
+  };
+  const auto& weights = store_.layout().weights();
+  expect_refusal(weights.front(), std::numeric_limits<float>::infinity());
+  const auto variance = std::find_if(weights.begin(), weights.end(),
+                                     [](const LayoutEntry& e) { return e.name.ends_with(".running_var"); });
+  ASSERT_NE(variance, weights.end());
+  expect_refusal(*variance, -1);
   EXPECT_EQ(read_file(path(), kLargestFile), before);
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/error.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
+#include "tools/other_file.h"
 #include "train/checkpoint.h"
 #include "train/exchange/example.h"
 #include "train/exchange/model_weights.h"
@@ -40,14 +41,11 @@ void require_sense(const Options& o) {
   if (o.bgr && !o.example.empty()) throw UsageError("--example shows red, green, blue; leave out --bgr");
 }
 
-/// Of a run its latest checkpoint.
-std::filesystem::path checkpoint_of(const std::string& model) {
-  return std::filesystem::is_directory(model) ? RunFolder(model).latest() : std::filesystem::path(model);
-}
-
 void run(const Options& o) {
   require_sense(o);
-  const std::filesystem::path checkpoint = checkpoint_of(o.model);
+  const std::filesystem::path checkpoint = named_checkpoint(o.model);
+  require_other_file(o.out, checkpoint);
+  require_other_file(o.example, checkpoint);
   const ModelWeights weights = read_model_weights(checkpoint);
   if (o.out.ends_with(kOnnx))
     export_onnx(o.out, weights, o.batch, o.bgr);

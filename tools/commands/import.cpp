@@ -7,8 +7,10 @@
 #include "models/config.h"
 #include "runtime/error.h"
 #include "tools/command.h"
+#include "tools/other_file.h"
 #include "tools/set_option.h"
 #include "train/exchange/model_weights.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/run_folder.h"
 
 namespace vkopple {
@@ -28,6 +30,7 @@ void run(const Options& o) {
     throw UsageError(fmt::format("{}: a checkpoint's name ends with .safetensors", o.out));
   if (o.config.empty() && !o.set.empty())
     throw UsageError("--set changes a configuration; name one by --config");
+  require_other_file(o.out, o.file);
   ImportOptions options{.bgr = o.bgr, .left_out = o.without};
   if (!o.config.empty()) options.config = Config::load(o.config, o.set);
   const ModelWeights weights = import_weights(*open_tensor_file(o.file), options);

@@ -3,16 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "runtime/error.h"
 #include "train/exchange/colour_order.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/exchange/torch_file.h"
 #include "train/model_layout.h"
 #include "train/quote.h"
 #include "train/safetensors.h"
+#include "train/stage_plan.h"
 
 namespace vkopple {
 namespace {
@@ -33,7 +35,11 @@ struct Source {
 };
 
 /// Whether the file's metadata are ours; other writers may have a "format" too.
-bool says_its_model(const TensorFile& file) { return file.metadata().contains("format_version"); }
+bool says_its_model(const TensorFile& file) {
+  const auto format = file.metadata().find(kFormatKey);
+  return format != file.metadata().end() &&
+         (format->second == kCheckpointFormat || format->second == kBgrFormat);
+}
 
 Source source_of_own(const TensorFile& file, const ImportOptions& options) {
   Metadata metadata = file.metadata();
@@ -43,7 +49,7 @@ Source source_of_own(const TensorFile& file, const ImportOptions& options) {
   if (options.bgr && !bgr)
     throw UsageError(
         fmt::format("{}: says that its colours are red, green, blue; leave --bgr out", shown(file)));
-  if (bgr) metadata[kFormatKey] = checkpoint_metadata({}).at(kFormatKey);
+  if (bgr) metadata[kFormatKey] = kCheckpointFormat;
   return {parse_checkpoint_header(metadata, file.path()), bgr};
 }
 
@@ -54,9 +60,11 @@ Source source_of_foreign(const TensorFile& file, const ImportOptions& options) {
                     "with by --config",
                     shown(file)));
   }
-  // Of the last stage, so that its networks count as trained.
-  const uint64_t last = options.config->stages().size() - 1;
-  return {{*options.config, {.stage = last, .data = "imported"}}, options.bgr};
+  // At the beginning of the last stage: its networks count as trained, and training goes on with it.
+  const StagePlan plan(*options.config, std::nullopt);
+  const TrainingPosition position{
+      .step = plan.stages().back().begin, .stage = plan.stages().size() - 1, .data = "imported"};
+  return {{*options.config, position}, options.bgr};
 }
 
 /// The file's name of every tensor, by the model's.
@@ -72,14 +80,6 @@ std::map<std::string, std::string> names_of(const TensorFile& file, const Import
   for (const std::string& name : names)
     by_model_name[parallel ? name.substr(kParallelPrefix.size()) : name] = name;
   return by_model_name;
-}
-
-/// The shape that PyTorch has for a tensor of this name and shape. The authors' learned motion of pixels is
-/// made of 1x1 convolutions, ours of products.
-StoredShape shape_in_torch(const std::string& name, StoredShape shape) {
-  if (name.starts_with("warping_model.warpnet2") && name.ends_with(".weight") && shape.size() == 2)
-    shape.insert(shape.end(), 2, 1);
-  return shape;
 }
 
 /// Reads what the layout has, and refuses what it has not.
@@ -110,7 +110,7 @@ class WeightsReader {
     const std::string in_file = found->second;
     names_.erase(found);
     const StoredShape& given = file_.shape(in_file);
-    if (given != shape && given != shape_in_torch(name, shape)) {
+    if (given != shape) {
       throw Error(
           fmt::format("{}: {} has the shape {}, its configuration asks for {}; was it trained with another?",
                       shown(file_), quote(in_file), to_string(given), to_string(shape)));
@@ -176,12 +176,10 @@ void export_weights(const std::filesystem::path& path, const ModelWeights& weigh
     metadata[kFormatKey] = kBgrFormat;
     swap_red_and_blue(tensors);
   }
-  if (!has_torch_ending(path)) {
+  if (has_torch_ending(path))
+    write_torch(path, metadata, tensors);
+  else
     write_safetensors(path, metadata, tensors);
-    return;
-  }
-  for (auto& [name, tensor] : tensors) tensor.shape = shape_in_torch(name, tensor.shape);
-  write_torch(path, metadata, tensors);
 }
 
 }  // namespace vkopple

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "train/checkpoint.h"
-#include "train/exchange/tensor_file.h"
 #include "train/stored_tensor.h"
+#include "train/tensor_file.h"
 
 namespace vkopple {
 

@@ -57,11 +57,18 @@ class ZipReader {
     void operator()(archive* a) const { archive_read_free(a); }
   };
 
-  /// What is stored is no longer than the file, so nothing can grow beyond it.
+  /// libarchive says the method of a member in the format's name alone: "ZIP 2.0 (uncompressed)".
+  bool is_stored() const {
+    const char* format = archive_format_name(archive_.get());
+    return format != nullptr && std::string_view(format).ends_with("(uncompressed)");
+  }
+
   std::vector<std::byte> read_member(archive_entry* entry) {
+    if (!is_stored())
+      fail("it is compressed, and only stored members are read; save the file without compression");
     const std::int64_t size = archive_entry_size_is_set(entry) != 0 ? archive_entry_size(entry) : -1;
     if (size < 0 || static_cast<std::uint64_t>(size) > bytes_left_)
-      fail("it is longer than the file; it is compressed or damaged");
+      fail("it is longer than the rest of the file; fetch or save it again");
     bytes_left_ -= static_cast<std::uint64_t>(size);
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     std::size_t used = 0;
@@ -93,8 +100,8 @@ class ZipReader {
   fs::path path_;
   FileDescriptor file_;
   std::unique_ptr<archive, Close> archive_;
-  std::string name_;  ///< of the member at hand
-  std::uint64_t bytes_left_ = 0;
+  std::string name_;              ///< of the member at hand
+  std::uint64_t bytes_left_ = 0;  ///< that members can still be made of
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "train/exchange/tensor_file.h"
 #include "train/stored_tensor.h"
+#include "train/tensor_file.h"
 
 namespace vkopple {
 

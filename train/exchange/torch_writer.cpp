@@ -1,14 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <span>
 
 #include "runtime/error.h"
 #include "train/archive_writer.h"
 #include "train/exchange/torch_file.h"
 #include "train/exchange/torch_types.h"
 #include "train/json_io.h"
+#include "train/pickle/pickle_writer.h"
 #include "train/quote.h"
 
 namespace vkopple {
@@ -23,37 +24,6 @@ std::string_view storage_of(const std::filesystem::path& path, const std::string
   return found->name;
 }
 
-/// The instructions of a pickle in protocol 2, which is what torch.save takes.
-class PickleText {
- public:
-  void raw(std::string_view instructions) { text_ += instructions; }
-  void global(std::string_view module, std::string_view name) {
-    text_ += fmt::format("c{}\n{}\n", module, name);
-  }
-  void string(std::string_view text) {
-    text_ += 'X';
-    little(text.size(), 4);
-    text_ += text;
-  }
-  void whole(std::int64_t number) {
-    raw("\x8a\x08");
-    little(static_cast<std::uint64_t>(number), 8);
-  }
-  void tuple(const std::vector<std::int64_t>& numbers) {
-    text_ += '(';
-    for (const std::int64_t number : numbers) whole(number);
-    text_ += 't';
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  void little(std::uint64_t number, int bytes) {
-    for (int i = 0; i < bytes; ++i) text_ += static_cast<char>(static_cast<unsigned char>(number >> 8 * i));
-  }
-
-  std::string text_;
-};
-
 std::vector<std::int64_t> strides_of(const StoredShape& shape) {
   std::vector<std::int64_t> strides(shape.size(), 1);
   for (std::size_t i = shape.size(); i-- > 1;)
@@ -61,45 +31,63 @@ std::vector<std::int64_t> strides_of(const StoredShape& shape) {
   return strides;
 }
 
-void write_entry(PickleText& out, std::string_view storage, std::size_t key, const StoredTensor& tensor) {
-  out.global("torch._utils", "_rebuild_tensor_v2");
-  out.raw("((");
-  out.string("storage");
-  out.global("torch", storage);
-  out.string(std::to_string(key));
-  out.string("cpu");
-  out.whole(element_count(tensor.shape).value());
-  out.raw("tQ");
-  out.whole(0);
-  out.tuple(tensor.shape);
-  out.tuple(strides_of(tensor.shape));
-  out.raw("\x89");  // requires no gradient
+void write_tuple(PickleWriter& out, const std::vector<std::int64_t>& numbers) {
+  out.tuple([&] {
+    for (const std::int64_t number : numbers) out.whole(number);
+  });
+}
+
+void write_ordered_dict(PickleWriter& out) {
   out.global("collections", "OrderedDict");
-  out.raw(")RtR");
+  out.empty_tuple();
+  out.call();
+}
+
+void write_entry(PickleWriter& out, std::string_view storage, std::size_t key, const StoredTensor& tensor) {
+  out.global("torch._utils", "_rebuild_tensor_v2");
+  out.tuple([&] {
+    out.tuple([&] {
+      out.text("storage");
+      out.global("torch", storage);
+      out.text(std::to_string(key));
+      out.text("cpu");
+      out.whole(element_count(tensor.shape).value());
+    });
+    out.persistent();
+    out.whole(0);
+    write_tuple(out, tensor.shape);
+    write_tuple(out, strides_of(tensor.shape));
+    out.truth(false);  // requires no gradient
+    write_ordered_dict(out);
+  });
+  out.call();
+}
+
+std::string pickle_of(const std::filesystem::path& path, const std::map<std::string, StoredTensor>& tensors) {
+  PickleWriter pickle;
+  write_ordered_dict(pickle);
+  pickle.entries([&] {
+    std::size_t key = 0;
+    for (const auto& [name, tensor] : tensors) {
+      pickle.text(name);
+      write_entry(pickle, storage_of(path, name, tensor.dtype), key++, tensor);
+    }
+  });
+  return pickle.finish();
 }
 
 }  // namespace
 
 void write_torch(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
                  const std::map<std::string, StoredTensor>& tensors) {
-  PickleText pickle;
-  pickle.raw("\x80\x02");
-  pickle.global("collections", "OrderedDict");
-  pickle.raw(")R(");
-  std::size_t key = 0;
-  for (const auto& [name, tensor] : tensors) {
-    pickle.string(name);
-    write_entry(pickle, storage_of(path, name, tensor.dtype), key++, tensor);
-  }
-  pickle.raw("u.");
-
+  const std::string pickle = pickle_of(path, tensors);
   ArchiveWriter zip(path, ArchiveKind::kStoredZip);
   const auto add = [&](std::string_view name, std::string_view text) {
     zip.add(fmt::format("archive/{}", name), std::as_bytes(std::span(text)));
   };
-  add("data.pkl", pickle.text());
+  add("data.pkl", pickle);
   add("byteorder", "little");
-  key = 0;
+  std::size_t key = 0;
   for (const auto& item : tensors) zip.add(fmt::format("archive/data/{}", key++), item.second.bytes);
   add("version", "3\n");
   if (!metadata.empty())

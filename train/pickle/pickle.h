@@ -1,9 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <set>
 #include <span>
 #include <string>
@@ -15,8 +12,10 @@ namespace vkopple {
 
 /// What a pickle may ask of us before it is refused.
 struct PickleLimits {
-  std::size_t max_depth = 64;            ///< nesting of containers
-  std::size_t max_values = 100'000'000;  ///< pushed in all; each takes 16 bytes
+  std::size_t max_depth = 64;  ///< nesting of containers
+  /// Pushed in all, and what builtins copy. Each takes 16 bytes where it is held; a string, bytes or a
+  /// container some 50 more and its content.
+  std::size_t max_values = 100'000'000;
 };
 
 /// A pickle of Python (protocols 0 to 5), read without executing anything.

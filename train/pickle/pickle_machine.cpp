@@ -383,10 +383,11 @@ bool PickleMachine::object(std::uint8_t op) {
 void PickleMachine::push_global(std::string_view module, std::string_view name) {
   const std::string full = fmt::format("{}.{}", module, name);
   if (!is_builtin_global(full) && !allowed_.contains(full)) {
-    const bool pandas = module.starts_with("pandas.");
+    const bool pandas = full.starts_with("pandas.");
     input_.fail(fmt::format("refers to {}, which is refused: {}", quote(full),
-                            pandas ? "of a table of pandas save df.to_dict('list') instead, a dict of lists"
-                                   : "nothing but plain data is read from a pickle"));
+                            pandas
+                                ? "save the table as a dict of lists: pickle.dump(table.to_dict('list'), file)"
+                                : "nothing but plain data is read from a pickle"));
   }
   push_text(PickleKind::kGlobal, full);
 }
@@ -400,6 +401,8 @@ void PickleMachine::call() {
   }
   const auto value = call_builtin(arena_, global.text(), arguments.items());
   if (!value) input_.fail(fmt::format("{} with arguments that are not understood", quote(global.text())));
+  // It is a copy of its argument, which one instruction of a few bytes may ask for again and again.
+  charge(value->is(PickleKind::kBytes) ? value->text().size() / sizeof(PickleValue) : value->items().size());
   push(*value);
 }
 
@@ -410,9 +413,13 @@ void PickleMachine::build() {
   node->state = state;
 }
 
+void PickleMachine::charge(std::size_t count) {
+  if (values_left_ < count) input_.fail("more values than are allowed; split the file, or is it damaged?");
+  values_left_ -= count;
+}
+
 void PickleMachine::push(PickleValue value) {
-  if (values_left_ == 0) input_.fail("more values than are allowed; split the file, or is it damaged?");
-  --values_left_;
+  charge(1);
   stack_.push_back(value);
 }
 

@@ -34,6 +34,7 @@ class PickleMachine {
   bool object(std::uint8_t op);
   [[noreturn]] void refuse(std::uint8_t op) const;
 
+  void charge(std::size_t count);  ///< refuses more values than are allowed in all
   void push(PickleValue value);
   void push_text(PickleKind kind, std::string_view text);
   void push_node(PickleKind kind, std::vector<PickleValue> items);

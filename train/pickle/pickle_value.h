@@ -80,7 +80,8 @@ struct PickleNode {
   std::size_t height = 0;  ///< levels of nesting below and with this one; 0: not measured yet
 };
 
-/// Owns what the values of one pickle refer to. References may be shared and, until check_depth, circular.
+/// Owns what the values of one pickle refer to. References may be shared and, until within_depth has
+/// looked, circular.
 class PickleArena {
  public:
   PickleValue text(PickleKind kind, std::string text);

@@ -65,16 +65,6 @@ PickleView PickleView::operator[](std::string_view key) const {
   return {*value_.find(key), fmt::format("{}: {}", where_, quote(key))};
 }
 
-std::vector<std::string> PickleView::keys() const {
-  if (!value_.is(PickleKind::kDict)) fail("a dict");
-  std::vector<std::string> keys;
-  for (std::size_t i = 0; i < value_.items().size(); i += 2) {
-    const PickleValue& key = value_.items()[i];
-    if (key.is(PickleKind::kString)) keys.push_back(key.text());
-  }
-  return keys;
-}
-
 std::size_t PickleView::size() const {
   if (!is_sequence(value_)) fail("a list");
   return value_.items().size();
@@ -83,11 +73,6 @@ std::size_t PickleView::size() const {
 PickleView PickleView::operator[](std::size_t index) const {
   if (index >= size()) throw Error(fmt::format("{} has {} items, no [{}]", where_, size(), index));
   return {value_.items()[index], fmt::format("{}[{}]", where_, index)};
-}
-
-bool PickleView::boolean() const {
-  if (!value_.is(PickleKind::kBool)) fail("a truth value");
-  return value_.boolean();
 }
 
 std::int64_t PickleView::integer(std::int64_t lowest, std::int64_t highest) const {
@@ -105,13 +90,6 @@ std::int64_t PickleView::integer(std::int64_t lowest, std::int64_t highest) cons
   if (number < lowest || number > highest)
     throw Error(fmt::format("{} must be {}, not {}", where_, wanted, number));
   return number;
-}
-
-double PickleView::number() const {
-  const auto number = as_number(value_);
-  if (!number) fail("a number");
-  if (!std::isfinite(*number)) throw Error(fmt::format("{} must be finite, not {}", where_, *number));
-  return *number;
 }
 
 const std::string& PickleView::string() const {

@@ -22,17 +22,13 @@ class PickleView {
   /// Of a dict.
   bool contains(std::string_view key) const;
   PickleView operator[](std::string_view key) const;
-  std::vector<std::string> keys() const;  ///< those that are strings, in the pickle's order
 
   /// Of a list or a tuple.
   std::size_t size() const;
   PickleView operator[](std::size_t index) const;
 
-  bool boolean() const;
   /// A whole number, or one of numpy.
   std::int64_t integer(std::int64_t lowest, std::int64_t highest) const;
-  /// Finite. Any number, or one of numpy.
-  double number() const;
   const std::string& string() const;
   /// Finite numbers of exactly this shape, row-major: nested lists, tuples and arrays of numpy.
   std::vector<double> numbers(std::span<const std::size_t> shape) const;

@@ -10,6 +10,7 @@
 #include "tests/support/temp_folder.h"
 #include "tests/support/tiny_model.h"
 #include "train/atomic_file.h"
+#include "train/exchange/open_tensor_file.h"
 #include "train/exchange/torch_file.h"
 #include "train/model_layout.h"
 #include "train/safetensors.h"
@@ -85,18 +86,6 @@ TEST_F(ModelWeightsTest, ExportedColoursAreWhatIsAskedFor) {
   expect_error([&] { read_model_weights(file("bgr.safetensors")); }, {"bgr.safetensors", "BGR"});
 }
 
-TEST_F(ModelWeightsTest, PointwiseProductsAreConvolutionsInTorch) {
-  const std::vector<float> values(6, 1.0F);
-  for (const char* name :
-       {"warping_model.warpnet2.conv1.weight", "warping_model.warpnet2_bground.conv4.weight"}) {
-    weights_.tensors.emplace(name, StoredTensor::of({3, 2}, std::span(values)));
-    export_weights(file("a.pt"), weights_, false);
-    EXPECT_EQ(TorchFile(file("a.pt")).shape(name), (StoredShape{3, 2, 1, 1}));
-    export_weights(file("a.safetensors"), weights_, false);
-    EXPECT_EQ(SafetensorsFile(file("a.safetensors")).shape(name), (StoredShape{3, 2}));
-  }
-}
-
 TEST_F(ModelWeightsTest, ACheckpointIsCompleteAndStartsAdamAnew) {
   write_model_checkpoint(file("c.safetensors"), weights_);
   const SafetensorsFile checkpoint(file("c.safetensors"));
@@ -114,10 +103,26 @@ TEST_F(ModelWeightsTest, ForeignFilesNeedAConfiguration) {
   const ModelWeights back = imported("foreign.pt", foreign_);
   expect_equal(back.tensors, weights_.tensors);
   EXPECT_EQ(back.header.config, test::tiny_config());
-  EXPECT_EQ(back.header.position.step, 0U);
-  EXPECT_EQ(back.header.position.stage, 1U);
   export_weights(file("own.pt"), weights_, false);
   expect_error([&] { imported("own.pt", foreign_); }, {"own.pt", "leave --config out"});
+}
+
+/// Of others' files too the metadata may have a "format", and say its version.
+TEST_F(ModelWeightsTest, AFileIsOursByItsFormat) {
+  write_safetensors(file("other.safetensors"), {{"format", "pt"}, {"format_version", "1"}}, weights_.tensors);
+  expect_equal(imported("other.safetensors", foreign_).tensors, weights_.tensors);
+  for (const char* format : {"vkopple checkpoint", "vkopple weights in BGR"}) {
+    write_safetensors(file("own.safetensors"), {{"format", format}}, weights_.tensors);
+    expect_error([&] { imported("own.safetensors"); }, {"own.safetensors", "format_version"});
+  }
+}
+
+TEST_F(ModelWeightsTest, ForeignWeightsAreWhereTheLastStageBegins) {
+  write_foreign();
+  EXPECT_EQ(imported("foreign.pt", foreign_).header.position,
+            (TrainingPosition{.step = 5, .stage = 1, .stage_step = 0, .data = "imported"}));
+  foreign_.config->training.stages.resize(1);
+  EXPECT_EQ(imported("foreign.pt", foreign_).header.position, (TrainingPosition{.data = "imported"}));
 }
 
 TEST_F(ModelWeightsTest, ForeignNamesAndTypes) {

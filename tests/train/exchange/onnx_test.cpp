@@ -8,6 +8,8 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <stdexcept>
+#include <string_view>
 
 #include "graph/ops/leaky_relu.h"
 #include "onnx.pb.h"
@@ -15,6 +17,7 @@
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
+#include "train/exchange/colour_order.h"
 #include "train/exchange/onnx/onnx_export.h"
 #include "train/exchange/onnx/onnx_graph.h"
 #include "train/exchange/onnx/onnx_translators.h"
@@ -42,6 +45,21 @@ Ints sizes(const onnx::ValueInfoProto& info) {
   return dims;
 }
 
+/// Throws where there is none of that name.
+const onnx::TensorProto& constant(const onnx::GraphProto& graph, const std::string& name) {
+  const auto found = std::find_if(graph.initializer().begin(), graph.initializer().end(),
+                                  [&](const auto& c) { return c.name() == name; });
+  if (found == graph.initializer().end()) throw std::runtime_error("no constant " + name);
+  return *found;
+}
+
+/// A constant's whole numbers.
+Ints ints(const onnx::TensorProto& tensor) {
+  Ints values(tensor.raw_data().size() / sizeof(std::int64_t));
+  std::memcpy(values.data(), tensor.raw_data().data(), values.size() * sizeof(std::int64_t));
+  return values;
+}
+
 /// What a graph says of its tensors, and how often it uses each kind of node.
 struct Inspection {
   std::set<std::string> defined;
@@ -53,12 +71,12 @@ Inspection inspect(const onnx::GraphProto& graph) {
   Inspection seen;
   const auto define = [&](const std::string& name) { EXPECT_TRUE(seen.defined.insert(name).second) << name; };
   for (const auto& input : graph.input()) define(input.name());
-  for (const auto& constant : graph.initializer()) {
-    define(constant.name());
+  for (const auto& tensor : graph.initializer()) {
+    define(tensor.name());
     const std::int64_t count =
-        std::accumulate(constant.dims().begin(), constant.dims().end(), std::int64_t{1}, std::multiplies<>());
-    const std::int64_t element = constant.data_type() == onnx::TensorProto::INT64 ? 8 : 4;
-    EXPECT_EQ(static_cast<std::int64_t>(constant.raw_data().size()), count * element) << constant.name();
+        std::accumulate(tensor.dims().begin(), tensor.dims().end(), std::int64_t{1}, std::multiplies<>());
+    const std::int64_t element = tensor.data_type() == onnx::TensorProto::INT64 ? 8 : 4;
+    EXPECT_EQ(static_cast<std::int64_t>(tensor.raw_data().size()), count * element) << tensor.name();
   }
   std::set<std::string> names;
   for (const auto& node : graph.node()) {
@@ -107,7 +125,7 @@ TEST(OnnxExport, HoldsTheWeights) {
   const ModelWeights weights = test::drawn_weights();
   const onnx::ModelProto model = exported(weights);
   std::map<std::string, const onnx::TensorProto*> constants;
-  for (const auto& constant : model.graph().initializer()) constants[constant.name()] = &constant;
+  for (const auto& tensor : model.graph().initializer()) constants[tensor.name()] = &tensor;
   for (const auto& [name, tensor] : weights.tensors) {
     const bool other = name.find("imag_net") != std::string::npos || name.find(".rnn.") != std::string::npos ||
                        name.ends_with("num_batches_tracked");
@@ -133,28 +151,65 @@ TEST(OnnxExport, OrdersTheGates) {
   for (const auto& [input, name] : inputs) {
     const auto& bytes = weights.tensors.at(std::string("segmentation_model.seg_net.seg_net.") + name).bytes;
     const size_t gate = bytes.size() / 4;
-    const auto& constants = model.graph().initializer();
-    const auto found = std::find_if(constants.begin(), constants.end(),
-                                    [&, i = input](const auto& c) { return c.name() == lstm->input(i); });
-    ASSERT_NE(found, constants.end());
+    const onnx::TensorProto& gates = constant(model.graph(), lstm->input(input));
+    ASSERT_EQ(gates.raw_data().size(), bytes.size());
     const std::array<size_t, 4> order{0, 3, 1, 2};
     for (size_t g = 0; g < order.size(); ++g)
-      EXPECT_EQ(std::memcmp(found->raw_data().data() + g * gate, bytes.data() + order[g] * gate, gate), 0)
+      EXPECT_EQ(std::memcmp(gates.raw_data().data() + g * gate, bytes.data() + order[g] * gate, gate), 0)
           << name << g;
   }
 }
 
+/// In what sees the image, and nowhere else.
 TEST(OnnxExport, SwapsColours) {
   const ModelWeights weights = test::drawn_weights();
-  const std::string name = "depth_model.depth_net.inc.conv.0.weight";
-  for (const bool bgr : {false, true}) {
-    const onnx::ModelProto model = exported(weights, 1, bgr);
-    for (const auto& constant : model.graph().initializer()) {
-      if (constant.name() != name) continue;
-      const auto& bytes = weights.tensors.at(name).bytes;
-      EXPECT_EQ(std::memcmp(constant.raw_data().data(), bytes.data(), bytes.size()) == 0, !bgr);
-    }
+  std::map<std::string, StoredTensor> swapped = weights.tensors;
+  swap_red_and_blue(swapped);
+  const auto bytes = [](const StoredTensor& tensor) {
+    return std::string(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+  };
+  const onnx::ModelProto rgb = exported(weights), bgr = exported(weights, 1, true);
+  for (const char* name :
+       {"depth_model.depth_net.inc.conv.0.weight", "segmentation_model.seg_net.seg_net.inc.conv.0.weight",
+        "depth_model.depth_net.outc.conv.weight"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(constant(rgb.graph(), name).raw_data(), bytes(weights.tensors.at(name)));
+    EXPECT_EQ(constant(bgr.graph(), name).raw_data(), bytes(swapped.at(name)));
+    const bool sees_images = std::string_view(name).find("inc") != std::string_view::npos;
+    EXPECT_EQ(constant(bgr.graph(), name).raw_data() != constant(rgb.graph(), name).raw_data(), sees_images);
   }
+}
+
+/// Behind the slots' logits lie those of the background, one zero that is spread over the image.
+TEST(OnnxExport, TheBackgroundsLogitsAreOneNumber) {
+  const onnx::ModelProto model = exported(test::drawn_weights(), 2);
+  const auto& nodes = model.graph().node();
+  const auto made = [&](const std::string& tensor) -> const onnx::NodeProto& {
+    const auto found = std::find_if(nodes.begin(), nodes.end(), [&](const auto& n) {
+      return n.output_size() == 1 && n.output(0) == tensor;
+    });
+    if (found == nodes.end()) throw std::runtime_error("no node makes " + tensor);
+    return *found;
+  };
+  const onnx::NodeProto& softmax = made(made("masks").input(0));
+  EXPECT_EQ(softmax.op_type(), "Softmax");
+  const onnx::NodeProto& all = made(softmax.input(0));
+  ASSERT_EQ(all.op_type(), "Concat");
+  const onnx::NodeProto& background = made(all.input(1));
+  ASSERT_EQ(background.op_type(), "Expand");
+  const onnx::TensorProto& zero = constant(model.graph(), background.input(0));
+  EXPECT_EQ(zero.dims_size(), 0);
+  EXPECT_EQ(zero.raw_data(), std::string(sizeof(float), '\0'));
+  EXPECT_EQ(ints(constant(model.graph(), background.input(1))), (Ints{2, 1, 16, 16}));
+}
+
+TEST(OnnxExport, RefusesRotationInSpace) {
+  ModelWeights weights = test::drawn_weights();
+  weights.header.config.model.orientation = Orientation::kEuler;
+  const TempFolder folder;
+  test::expect_error([&] { export_onnx(folder / "m.onnx", weights, 1, false); },
+                     {"m.onnx", "3D rotation", ".onnx", ".safetensors"});
+  EXPECT_EQ(folder.entries(), 0U);
 }
 
 /// Values of small graphs, and the nodes that they become.
@@ -171,15 +226,7 @@ class OnnxGraphTest : public testing::Test {
     return types;
   }
   /// The whole numbers that input `i` of node `n` is.
-  Ints ints(int n, int i) const {
-    for (const auto& constant : out_.initializer()) {
-      if (constant.name() != out_.node(n).input(i)) continue;
-      Ints values(constant.raw_data().size() / sizeof(std::int64_t));
-      std::memcpy(values.data(), constant.raw_data().data(), constant.raw_data().size());
-      return values;
-    }
-    return {};
-  }
+  Ints ints(int n, int i) const { return vkopple::ints(constant(out_, out_.node(n).input(i))); }
 
   Graph graph_;
   std::map<std::string, StoredTensor> weights_;

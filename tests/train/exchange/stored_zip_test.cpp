@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
@@ -16,11 +17,11 @@ namespace {
 using test::expect_error;
 using test::TempFolder;
 
-/// What Python's zipfile makes of a/data.pkl, 2000 zeros, deflated.
+/// What Python's zipfile makes of a/data.pkl, 20 zeros, deflated.
 constexpr std::string_view kDeflated =
-    "504b03041400000008000000210044f4c90211000000d00700000a000000612f646174612e706b6c63601805a360148c8251"
-    "300a46c1500700504b010214031400000008000000210044f4c90211000000d00700000a0000000000000000000000800100"
-    "000000612f646174612e706b6c504b0506000000000100010038000000390000000000";
+    "504b0304140000000800000021008d9bd50f05000000140000000a000000612f646174612e706b6c6360c00400504b0102140314"
+    "0000000800000021008d9bd50f05000000140000000a0000000000000000000000800100000000612f646174612e706b6c504b05"
+    "060000000001000100380000002d0000000000";
 
 TEST(StoredZip, ReadsWhatWasWritten) {
   const TempFolder folder;
@@ -39,10 +40,31 @@ TEST(StoredZip, ReadsWhatWasWritten) {
   EXPECT_FALSE(is_zip(folder / "b.zip"));
 }
 
-TEST(StoredZip, RefusesWhatIsCompressed) {
+TEST(StoredZip, ReadsStoredMembersOnly) {
   const TempFolder folder;
   write_file(folder / "a.zip", test::unhex(kDeflated));
-  expect_error([&] { read_stored_zip(folder / "a.zip"); }, {"a.zip", "'a/data.pkl'", "compressed"});
+  expect_error([&] { read_stored_zip(folder / "a.zip"); }, {"a.zip", "'a/data.pkl'", "compressed", "stored"});
+}
+
+/// Of a member that says it has a gigabyte.
+TEST(StoredZip, MembersAreNoLargerThanTheFile) {
+  const TempFolder folder;
+  const std::filesystem::path path = folder / "a.zip";
+  ArchiveWriter zip(path, ArchiveKind::kStoredZip);
+  zip.add("m/a", std::vector<std::byte>(100, std::byte{7}));
+  zip.commit();
+  auto bytes = read_file(path, 1 << 20);
+  const std::array<std::byte, 4> hundred{std::byte{100}};
+  int sizes = 0;
+  for (auto at = bytes.begin(); at != bytes.end();) {
+    at = std::search(at, bytes.end(), hundred.begin(), hundred.end());
+    if (at == bytes.end()) break;
+    at[3] = std::byte{0x40};
+    ++sizes;
+  }
+  EXPECT_EQ(sizes, 6) << "stored and own, before the member, behind it and in the directory";
+  write_file(path, bytes);
+  expect_error([&] { read_stored_zip(path); }, {"a.zip", "'m/a'", "longer than the rest of the file"});
 }
 
 TEST(StoredZip, RefusesDamage) {

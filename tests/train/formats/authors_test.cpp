@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
+#include "runtime/error.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/fixture.h"
 #include "tests/support/small_scene.h"
@@ -17,6 +20,8 @@
 
 namespace vkopple {
 namespace {
+
+namespace fs = std::filesystem;
 
 using test::expect_error;
 using test::small_scene;
@@ -93,6 +98,39 @@ TEST_F(AuthorsTest, ReadsTablesOfListsAndOfNumpy) {
 TEST_F(AuthorsTest, SaysHowToSaveATableOfPandas) {
   copy_table("pandas.pickle");
   expect_error([&] { open_scenes(folder_.path()); }, {"data_map.pickle", "pandas", "to_dict('list')"});
+}
+
+/// Cut off or changed anywhere, a table is read or refused in one line that begins with the file's name.
+TEST_F(AuthorsTest, NamesADamagedTable) {
+  const fs::path path = folder_ / "data_map.pickle";
+  constexpr std::size_t kStep = 7;
+  int refused = 0;
+  const auto attempt = [&](const std::string& bytes) {
+    fs::remove(path);  // file systems write out at once what is written over
+    std::ofstream(path, std::ios::binary) << bytes;
+    try {
+      read_authors_table(path);
+    } catch (const Error& problem) {
+      const std::string text = problem.what();
+      ASSERT_TRUE(text.starts_with(path.string()) && text.find('\n') == std::string::npos) << text;
+      ++refused;
+    }
+  };
+  for (const char* table : {"lists.pickle", "numpy.pickle", "pandas.pickle"}) {
+    const std::string whole = read_text_file(test::fixture(std::string("authors/") + table), 1 << 20);
+    const int before = refused;
+    for (std::size_t i = 0; i < whole.size(); i += kStep) {
+      SCOPED_TRACE(std::string(table) + " " + std::to_string(i));
+      attempt(whole.substr(0, i));
+      for (const int flipped : {1, 0x80}) {
+        std::string changed = whole;
+        changed[i] = static_cast<char>(changed[i] ^ flipped);
+        attempt(changed);
+      }
+      if (HasFatalFailure()) return;
+    }
+    EXPECT_GT(refused - before, static_cast<int>(whole.size() / kStep + 1)) << table;
+  }
 }
 
 TEST_F(AuthorsTest, FindsPicturesBesideTheFolderToo) {

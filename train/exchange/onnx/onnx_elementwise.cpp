@@ -49,8 +49,7 @@ void slot_masks_to_onnx(OnnxGraph& onnx, const Node& node) {
   const Shape& masks = onnx.shape(node.outputs[0]);
   const std::string logits =
       onnx.add("Transpose", inputs_of(onnx, node), {{"perm", std::vector<std::int64_t>{1, 0, 2, 3}}});
-  const std::vector<float> zeros(static_cast<std::size_t>(masks.elements() / masks[1]), 0.0F);
-  const std::string background = onnx.floats(stored(masks.with(1, 1)), zeros);
+  const std::string background = onnx.add("Expand", {onnx.scalar(0), onnx.ints(stored(masks.with(1, 1)))});
   const std::string all = onnx.add("Concat", {logits, background}, {{"axis", std::int64_t{1}}});
   onnx.define(node.outputs[0], onnx.add("Softmax", {all}, {{"axis", std::int64_t{1}}}));
 }

@@ -9,6 +9,7 @@
 #include "train/exchange/colour_order.h"
 #include "train/exchange/onnx/onnx_graph.h"
 #include "train/exchange/onnx/onnx_translators.h"
+#include "train/quote.h"
 
 namespace vkopple {
 namespace {
@@ -51,6 +52,11 @@ void translate(const Graph& graph, const std::map<std::string, StoredTensor>& we
 }  // namespace
 
 void export_onnx(const std::filesystem::path& path, const ModelWeights& weights, std::int64_t batch, bool bgr) {
+  if (weights.header.config.model.orientation != Orientation::kYaw)
+    throw Error(
+        fmt::format("{}: a model with 3D rotation (model.orientation) can't be exported as .onnx; export its "
+                    "weights as .pt or .safetensors",
+                    one_line(path.string(), 4096)));
   std::map<std::string, StoredTensor> tensors = weights.tensors;
   if (bgr) swap_red_and_blue(tensors);
   Graph graph;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <charconv>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include "train/formats/authors/authors_units.h"
 #include "train/pickle/numpy_array.h"
 #include "train/pickle/pickle.h"
+#include "train/pickle/pickle_writer.h"
 #include "train/quote.h"
 
 namespace vkopple {
@@ -90,64 +90,23 @@ AuthorsPose parse_pose(const std::string& text, const std::string& source) {
   throw Error(fmt::format("{}: must hold six numbers, X Y Z yaw pitch roll", source));
 }
 
-/// Instructions of protocol 2, as many as a table needs.
-class TablePickle {
- public:
-  TablePickle() : bytes_("\x80\x02") {}
-
-  void text(const std::string& value) {
-    bytes_ += 'X';
-    for (int shift = 0; shift < 32; shift += 8) bytes_ += static_cast<char>(value.size() >> shift & 255);
-    bytes_ += value;
-  }
-  void number(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
-    bytes_ += 'G';
-    for (int shift = 56; shift >= 0; shift -= 8) bytes_ += static_cast<char>(bits >> shift & 255);
-  }
-  template <std::size_t N>
-  void numbers(const std::array<double, N>& values) {
-    list([&] {
-      for (const double value : values) number(value);
-    });
-  }
-  template <class Fill>
-  void list(const Fill& fill) {
-    bytes_ += "](";
-    fill();
-    bytes_ += 'e';
-  }
-  /// Fill gives keys and values by turns.
-  template <class Fill>
-  void dict(const Fill& fill) {
-    bytes_ += "}(";
-    fill();
-    bytes_ += 'u';
-  }
-  std::string finish() { return std::move(bytes_) + '.'; }
-
- private:
-  std::string bytes_;
-};
+template <std::size_t N>
+void write_numbers(PickleWriter& out, const std::array<double, N>& values) {
+  out.list([&] {
+    for (const double value : values) out.number(value);
+  });
+}
 
 }  // namespace
 
 std::vector<AuthorsRow> read_authors_table(const fs::path& path) {
   const std::vector<std::byte> bytes = read_file(path, kMaxBytes);
-  try {
-    const Pickle pickle(bytes, path.string(), numpy_globals());
-    const PickleView table = pickle.view();
-    std::vector<AuthorsRow> rows;
-    const std::size_t count = table["frame1"].size();
-    for (std::size_t row = 0; row < count; ++row) rows.push_back(read_row(table, row));
-    return rows;
-  } catch (const Error& problem) {
-    if (std::string_view(problem.what()).find("pandas") == std::string_view::npos) throw;
-    throw Error(
-        fmt::format("{}; the table is pandas' own kind of object: save it again as a dict of lists, by "
-                    "pickle.dump(table.to_dict('list'), file)",
-                    problem.what()));
-  }
+  const Pickle pickle(bytes, path.string(), numpy_globals());
+  const PickleView table = pickle.view();
+  std::vector<AuthorsRow> rows;
+  const std::size_t count = table["frame1"].size();
+  for (std::size_t row = 0; row < count; ++row) rows.push_back(read_row(table, row));
+  return rows;
 }
 
 std::vector<AuthorsRow> read_authors_texts(const fs::path& folder, std::size_t frames) {
@@ -177,7 +136,7 @@ std::string authors_table_pickle(const std::vector<AuthorsRow>& rows) {
   const auto all = [&](const auto& has) { return std::all_of(rows.begin(), rows.end(), has); };
   const bool objects = all([](const AuthorsRow& row) { return row.objects.size() == kFrames; });
   const bool shapes = objects && all([](const AuthorsRow& row) { return !row.shapes.empty(); });
-  TablePickle pickle;
+  PickleWriter pickle;
   const auto each_row = [&](const std::string& name, const auto& cell) {
     pickle.text(name);
     pickle.list([&] {
@@ -188,16 +147,18 @@ std::string authors_table_pickle(const std::vector<AuthorsRow>& rows) {
     for (std::size_t frame = 0; frame < kFrames; ++frame) {
       each_row(column("frame", frame), [&](const AuthorsRow& row) { pickle.text(row.stems.at(frame)); });
       each_row(column("campos", frame),
-               [&](const AuthorsRow& row) { pickle.numbers(authors_camera(row.cameras.at(frame))); });
+               [&](const AuthorsRow& row) { write_numbers(pickle, authors_camera(row.cameras.at(frame))); });
       if (objects) {
         each_row(column("objpos", frame), [&](const AuthorsRow& row) {
           pickle.list([&] {
-            for (const PlacedObject& object : row.objects[frame]) pickle.numbers(authors_location(object));
+            for (const PlacedObject& object : row.objects[frame])
+              write_numbers(pickle, authors_location(object));
           });
         });
         each_row(column("objpose", frame), [&](const AuthorsRow& row) {
           pickle.list([&] {
-            for (const PlacedObject& object : row.objects[frame]) pickle.numbers(authors_object_pose(object));
+            for (const PlacedObject& object : row.objects[frame])
+              write_numbers(pickle, authors_object_pose(object));
           });
         });
       }

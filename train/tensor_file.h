@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,8 +25,5 @@ class TensorFile {
   virtual const StoredShape& shape(const std::string& name) const = 0;
   virtual StoredTensor read(const std::string& name) const = 0;
 };
-
-/// A .pt or a .safetensors file; its content says which. Throws Error.
-std::unique_ptr<TensorFile> open_tensor_file(const std::filesystem::path& path);
 
 }  // namespace vkopple

@@ -1,7 +1,6 @@
 #include "graph/parallel/shared_statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
 namespace vkopple {

@@ -10,7 +10,7 @@ namespace vkopple {
 // Batch normalisation over the batches of several processes: between the two stages of its reductions the host
 // puts what all have found in place of what one has (shaders/norm says what the partials are).
 
-/// How the second stage of forward is to count strips whose content shared_statistics() has made.
+/// How the second stage of forward is to count strips whose content share_statistics() has made.
 NormStrips shared_strips(const NormStrips& strips, int processes);
 
 /// `partials` of norm_statistics, (groups, blocks, strips) × {mean, squares about it, what the mean rounds off}

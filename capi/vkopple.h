@@ -2,10 +2,11 @@
  *
  *     vkopple_model* model = NULL;
  *     vkopple_seen* seen = NULL;
- *     if (vkopple_load("run/latest.safetensors", NULL, &model) != VKOPPLE_OK) puts(vkopple_last_error());
  *     vkopple_image image = {pixels, height, width, 0, VKOPPLE_RGB8};
- *     if (vkopple_see(model, &image, &seen) != VKOPPLE_OK) puts(vkopple_last_error());
- *     ... vkopple_seen_depth(seen) ...
+ *     if (vkopple_load("run", NULL, &model) == VKOPPLE_OK && vkopple_see(model, &image, &seen) == VKOPPLE_OK)
+ *       ... vkopple_seen_depth(seen) ...
+ *     else
+ *       puts(vkopple_last_error());
  *     vkopple_seen_free(seen);
  *     vkopple_free(model);
  *

@@ -17,7 +17,7 @@
  * each other. What was seen may be read by any number of threads at once, and outlives its model.
  *
  * Stability: within one soversion functions, constants and structures stay as they are; structures that begin
- * with struct_size may grow at their end. */
+ * with struct_size may grow at their end, and callers that were built before go on as they did. */
 #ifndef VKOPPLE_H
 #define VKOPPLE_H
 

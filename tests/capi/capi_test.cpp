@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -260,6 +261,9 @@ TEST_F(CInterface, TellsOfTheModelAndOfARunsLatest) {
   EXPECT_DOUBLE_EQ(info.fov, M_PI / 2);
   EXPECT_DOUBLE_EQ(info.max_depth, 7.2);
   EXPECT_EQ(info.step, 9U);
+  info.struct_size = sizeof info - 1;
+  EXPECT_EQ(vkopple_get_model_info(model.get(), &info), VKOPPLE_WRONG_USE);
+  expect_message({"vkopple_model_info.struct_size", std::to_string(sizeof info - 1)});
   EXPECT_STREQ(vkopple_version(), "0.1.0");
 }
 
@@ -283,9 +287,15 @@ TEST_F(CInterface, LoadingNamesWhatIsWrong) {
   options = {3, nullptr, VKOPPLE_FLOAT32};
   EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
   expect_message({"struct_size", "3"});
-  options = {sizeof(vkopple_options), nullptr, 7};
+  options = {sizeof(vkopple_options) + 8, nullptr, VKOPPLE_FLOAT32};
   EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
-  expect_message({"precision", "7"});
+  expect_message({"struct_size", "newer library"});
+  // The last member's end, without what is padding behind it.
+  for (const size_t size : {offsetof(vkopple_options, precision) + sizeof(int32_t), sizeof(vkopple_options)}) {
+    options = {size, nullptr, 7};
+    EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
+    expect_message({"precision", "7"});
+  }
   vkopple_free(nullptr);
 }
 

@@ -73,6 +73,12 @@ vkopple_object as_object(const vkopple::SeenObject& o) {
       {o.location[0], o.location[1], o.location[2]}, o.angle, o.distance, o.yaw, o.yaw_probability, o.share};
 }
 
+/// Null where there is no such object.
+const vkopple::SeenObject* find_object(const vkopple_seen* seen, size_t object) {
+  const auto& objects = seen->image.objects;
+  return object < objects.size() ? &objects[object] : nullptr;
+}
+
 template <class T>
 void store(T* where, T value) {
   if (where != nullptr) *where = value;
@@ -100,9 +106,10 @@ vkopple_status vkopple_get_model_info(const vkopple_model* model, vkopple_model_
     require_pointer(model, "model");
     require_pointer(info, "info");
     const vkopple::ModelConfig& config = model->loaded.config.model;
+    const bool tells_yaws = config.orientation == vkopple::Orientation::kYaw;
     const vkopple_model_info told{
         sizeof(vkopple_model_info),   config.height,          config.width, config.slots,
-        config.bins, model->objects ? 1 : 0, config.fov,   config.max_depth,
+        tells_yaws ? config.bins : 0, model->objects ? 1 : 0, config.fov,   config.max_depth,
         model->loaded.position.step};
     vkopple::capi::write_struct(info, told, kFirstModelInfo, "vkopple_model_info");
   });
@@ -151,9 +158,15 @@ const vkopple_object* vkopple_seen_objects(const vkopple_seen* seen, size_t* cou
 }
 
 const double* vkopple_seen_pose(const vkopple_seen* seen, size_t object, size_t* bins) {
-  const auto& objects = seen->image.objects;
-  store(bins, object < objects.size() ? objects[object].pose.size() : size_t{0});
-  return object < objects.size() ? objects[object].pose.data() : nullptr;
+  const vkopple::SeenObject* seen_object = find_object(seen, object);
+  const bool there = seen_object != nullptr && !seen_object->pose.empty();
+  store(bins, there ? seen_object->pose.size() : size_t{0});
+  return there ? seen_object->pose.data() : nullptr;
+}
+
+const double* vkopple_seen_rotation(const vkopple_seen* seen, size_t object) {
+  const vkopple::SeenObject* seen_object = find_object(seen, object);
+  return seen_object != nullptr && seen_object->rotation ? seen_object->rotation->data() : nullptr;
 }
 
 const float* vkopple_seen_soft_masks(const vkopple_seen* seen, size_t* planes, int32_t* height,

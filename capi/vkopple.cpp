@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "capi/boundary.h"
+#include "capi/growing_struct.h"
 #include "capi/read_image.h"
 #include "models/perception.h"
 #include "runtime/device.h"
@@ -51,28 +51,32 @@ void require_pointer(const void* pointer, const char* name) {
   if (pointer == nullptr) throw vkopple::UsageError(fmt::format("{} is a null pointer", name));
 }
 
-/// A caller that was built against a newer header may say things that this library would overlook.
-void require_struct_size(size_t given, size_t known, const char* name) {
-  if (given != known)
-    throw vkopple::UsageError(fmt::format(
-        "{}.struct_size is {} and must be {}: set it to sizeof({}), and build against the header of vkopple {}",
-        name, given, known, name, VKOPPLE_VERSION));
-}
+// Sizes for growing_struct.h. A member that is added begins behind what was the structure's sizeof: what was
+// padding there holds anything in a caller of before.
+constexpr size_t kFirstOptions = offsetof(vkopple_options, precision) + sizeof(int32_t);
+constexpr size_t kFirstModelInfo = offsetof(vkopple_model_info, step) + sizeof(uint64_t);
 
-vkopple_options checked(const vkopple_options* options) {
+vkopple_options checked(const vkopple_options* given) {
   constexpr vkopple_options kStandard{sizeof(vkopple_options), nullptr, VKOPPLE_FLOAT32};
-  if (options == nullptr) return kStandard;
-  require_struct_size(options->struct_size, sizeof(vkopple_options), "vkopple_options");
-  const int32_t precision = options->precision;
+  if (given == nullptr) return kStandard;
+  const vkopple_options options =
+      vkopple::capi::read_struct(given, kStandard, kFirstOptions, "vkopple_options");
+  const int32_t precision = options.precision;
   if (precision != VKOPPLE_FLOAT32 && precision != VKOPPLE_MIXED)
     throw vkopple::UsageError(
         fmt::format("the precision is {}; it must be VKOPPLE_FLOAT32 or VKOPPLE_MIXED", precision));
-  return *options;
+  return options;
 }
 
 vkopple_object as_object(const vkopple::SeenObject& o) {
   return {
       {o.location[0], o.location[1], o.location[2]}, o.angle, o.distance, o.yaw, o.yaw_probability, o.share};
+}
+
+/// Null where there is no such object.
+const vkopple::SeenObject* find_object(const vkopple_seen* seen, size_t object) {
+  const auto& objects = seen->image.objects;
+  return object < objects.size() ? &objects[object] : nullptr;
 }
 
 template <class T>
@@ -101,17 +105,13 @@ vkopple_status vkopple_get_model_info(const vkopple_model* model, vkopple_model_
   return guarded([&] {
     require_pointer(model, "model");
     require_pointer(info, "info");
-    require_struct_size(info->struct_size, sizeof(vkopple_model_info), "vkopple_model_info");
     const vkopple::ModelConfig& config = model->loaded.config.model;
-    *info = {sizeof(vkopple_model_info),
-             config.height,
-             config.width,
-             config.slots,
-             config.bins,
-             model->objects ? 1 : 0,
-             config.fov,
-             config.max_depth,
-             model->loaded.position.step};
+    const bool tells_yaws = config.orientation == vkopple::Orientation::kYaw;
+    const vkopple_model_info told{
+        sizeof(vkopple_model_info),   config.height,          config.width, config.slots,
+        tells_yaws ? config.bins : 0, model->objects ? 1 : 0, config.fov,   config.max_depth,
+        model->loaded.position.step};
+    vkopple::capi::write_struct(info, told, kFirstModelInfo, "vkopple_model_info");
   });
 }
 
@@ -158,9 +158,15 @@ const vkopple_object* vkopple_seen_objects(const vkopple_seen* seen, size_t* cou
 }
 
 const double* vkopple_seen_pose(const vkopple_seen* seen, size_t object, size_t* bins) {
-  const auto& objects = seen->image.objects;
-  store(bins, object < objects.size() ? objects[object].pose.size() : size_t{0});
-  return object < objects.size() ? objects[object].pose.data() : nullptr;
+  const vkopple::SeenObject* seen_object = find_object(seen, object);
+  const bool there = seen_object != nullptr && !seen_object->pose.empty();
+  store(bins, there ? seen_object->pose.size() : size_t{0});
+  return there ? seen_object->pose.data() : nullptr;
+}
+
+const double* vkopple_seen_rotation(const vkopple_seen* seen, size_t object) {
+  const vkopple::SeenObject* seen_object = find_object(seen, object);
+  return seen_object != nullptr && seen_object->rotation ? seen_object->rotation->data() : nullptr;
 }
 
 const float* vkopple_seen_soft_masks(const vkopple_seen* seen, size_t* planes, int32_t* height,

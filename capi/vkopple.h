@@ -2,10 +2,11 @@
  *
  *     vkopple_model* model = NULL;
  *     vkopple_seen* seen = NULL;
- *     if (vkopple_load("run/latest.safetensors", NULL, &model) != VKOPPLE_OK) puts(vkopple_last_error());
  *     vkopple_image image = {pixels, height, width, 0, VKOPPLE_RGB8};
- *     if (vkopple_see(model, &image, &seen) != VKOPPLE_OK) puts(vkopple_last_error());
- *     ... vkopple_seen_depth(seen) ...
+ *     if (vkopple_load("run", NULL, &model) == VKOPPLE_OK && vkopple_see(model, &image, &seen) == VKOPPLE_OK)
+ *       ... vkopple_seen_depth(seen) ...
+ *     else
+ *       puts(vkopple_last_error());
  *     vkopple_seen_free(seen);
  *     vkopple_free(model);
  *
@@ -16,7 +17,7 @@
  * each other. What was seen may be read by any number of threads at once, and outlives its model.
  *
  * Stability: within one soversion functions, constants and structures stay as they are; structures that begin
- * with struct_size may grow at their end. */
+ * with struct_size may grow at their end, and callers that were built before go on as they did. */
 #ifndef VKOPPLE_H
 #define VKOPPLE_H
 
@@ -72,7 +73,7 @@ typedef struct vkopple_model_info {
   int32_t height;     /* pixels that the model works on; images of other sizes are resized to it */
   int32_t width;
   int32_t slots;        /* objects it can tell apart, beside the background */
-  int32_t bins;         /* of an object's yaw */
+  int32_t bins;         /* of an object's yaw; 0: the model tells rotations in space instead */
   int32_t sees_objects; /* 0: its object network has not learned yet, and only depth is told */
   double fov;           /* vertical angle of view for which locations hold */
   double max_depth;
@@ -103,8 +104,8 @@ typedef struct vkopple_object {
   double location[3];     /* in the camera's frame */
   double angle;           /* atan2(x, y): to the right of straight ahead */
   double distance;        /* sqrt(x^2 + y^2) */
-  double yaw;             /* middle of the most likely bin, from 0 to 2 pi */
-  double yaw_probability; /* of that bin */
+  double yaw;             /* middle of the most likely bin, from 0 to 2 pi; 0 from a model that tells rotations */
+  double yaw_probability; /* of that bin; 0 likewise */
   double share;           /* of the mask's pixels, from 0 to 1; 0: the slot is empty */
 } vkopple_object;
 
@@ -130,8 +131,11 @@ VKOPPLE_API uint32_t vkopple_seen_background(const vkopple_seen* seen, double* s
 /* `count` objects, one a slot; none from a model that does not see objects. */
 VKOPPLE_API const vkopple_object* vkopple_seen_objects(const vkopple_seen* seen, size_t* count);
 /* Probabilities of `bins` bins of an object's yaw, bin i about 2 pi i / bins; NULL where there is no such
- * object. */
+ * object, and from a model that tells rotations. */
 VKOPPLE_API const double* vkopple_seen_pose(const vkopple_seen* seen, size_t object, size_t* bins);
+/* The matrix of 3 x 3 numbers, row by row, that turns directions from an object's frame to the camera's; NULL where
+ * there is no such object, and from a model that tells yaws. */
+VKOPPLE_API const double* vkopple_seen_rotation(const vkopple_seen* seen, size_t object);
 /* (planes, height, width) of the model's size: how far each pixel belongs to each slot, the background last,
  * adding up to 1; NULL from a model that does not see objects. */
 VKOPPLE_API const float* vkopple_seen_soft_masks(const vkopple_seen* seen, size_t* planes, int32_t* height,

@@ -2,14 +2,16 @@
 find_program(GZIP gzip)
 set(vkopple_texts "")
 
-# vkopple_text(<file> <folder under the prefix> <argument>...): installs what `vkopple ARGUMENT...` prints.
+# vkopple_text(<file> <folder under the prefix> <argument>...): installs what `vkopple ARGUMENT...` prints. Two commands
+# where it is compressed: a pipe's status would be gzip's, whatever became of the text.
 function(vkopple_text file folder)
   set(out ${CMAKE_BINARY_DIR}/texts/${file})
+  string(REGEX REPLACE "\\.gz$" "" plain ${out})
   set(compress "")
-  if(file MATCHES "\\.gz$" AND GZIP)
-    set(compress | ${GZIP} -9n)
+  if(NOT plain STREQUAL out)
+    set(compress COMMAND ${GZIP} -9nc ${plain} > ${out})
   endif()
-  add_custom_command(OUTPUT ${out} COMMAND $<TARGET_FILE:vkopple> ${ARGN} ${compress} > ${out} DEPENDS vkopple VERBATIM)
+  add_custom_command(OUTPUT ${out} COMMAND $<TARGET_FILE:vkopple> ${ARGN} > ${plain} ${compress} DEPENDS vkopple VERBATIM)
   install(FILES ${out} DESTINATION ${folder} COMPONENT program)
   set(vkopple_texts ${vkopple_texts} ${out} PARENT_SCOPE)
 endfunction()
@@ -23,6 +25,7 @@ vkopple_text(vkopple.${man_ending} ${CMAKE_INSTALL_MANDIR}/man1 manual)
 file(GLOB commands CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/tools/commands/*.cpp)
 foreach(source IN LISTS commands)
   get_filename_component(command ${source} NAME_WE)
+  string(REPLACE _ - command ${command})
   vkopple_text(vkopple-${command}.${man_ending} ${CMAKE_INSTALL_MANDIR}/man1 manual ${command})
 endforeach()
 # Found by their names in these folders.

@@ -3,7 +3,8 @@
  *     see MODEL IMAGE.ppm
  *
  * MODEL is a checkpoint or the folder of a run, the image a binary PPM (convert photo.jpg photo.ppm). Prints a line
- * of the nearest and farthest depth, and a line an object: slot, share, location, yaw with its probability. */
+ * of the nearest and farthest depth, and a line an object: slot, share, location, then yaw with its probability, or
+ * the nine numbers of its rotation from a model that tells rotations. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <vkopple.h>
@@ -37,6 +38,15 @@ static picture read_ppm(const char* path) {
   return image;
 }
 
+static void print_object(const vkopple_seen* seen, size_t i, const vkopple_object* o) {
+  const double* rotation = vkopple_seen_rotation(seen, i);
+  int k;
+  printf("object %zu %.17g %.17g %.17g %.17g", i, o->share, o->location[0], o->location[1], o->location[2]);
+  if (rotation == NULL) printf(" %.17g %.17g", o->yaw, o->yaw_probability);
+  for (k = 0; rotation != NULL && k < 9; ++k) printf(" %.17g", rotation[k]);
+  printf("\n");
+}
+
 static void print_seen(const vkopple_seen* seen) {
   int32_t height, width;
   size_t count, i;
@@ -49,11 +59,7 @@ static void print_seen(const vkopple_seen* seen) {
     if (depth[i] > farthest) farthest = depth[i];
   }
   printf("depth %.9g %.9g\n", (double)nearest, (double)farthest);
-  for (i = 0; i < count; ++i) {
-    const vkopple_object* o = &objects[i];
-    printf("object %zu %.17g %.17g %.17g %.17g %.17g %.17g\n", i, o->share, o->location[0], o->location[1],
-           o->location[2], o->yaw, o->yaw_probability);
-  }
+  for (i = 0; i < count; ++i) print_object(seen, i, &objects[i]);
 }
 
 int main(int argc, char** argv) {

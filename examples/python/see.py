@@ -25,10 +25,16 @@ def read_ppm(path):
     return numpy.frombuffer(data[-numpy.prod(shape):], numpy.uint8).reshape(shape)
 
 
+def orientation_json(o):
+    if o.rotation is None:
+        return {"yaw": o.yaw, "yaw_probability": o.yaw_probability}
+    return {"rotation": o.rotation.ravel().tolist()}
+
+
 def as_json(path, seen):
     height, width = seen.mask.shape
     objects = [{"slot": k, "share": o.share, "location": list(o.location), "angle": o.angle, "distance": o.distance,
-                "yaw": o.yaw, "yaw_probability": o.yaw_probability} for k, o in enumerate(seen.objects)]
+                **orientation_json(o)} for k, o in enumerate(seen.objects)]
     return {"image": path, "name": pathlib.Path(path).stem, "height": height, "width": width,
             "background": {"index": seen.background, "share": seen.background_share}, "objects": objects}
 

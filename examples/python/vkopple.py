@@ -47,10 +47,11 @@ class Object:
     location: tuple  # x right, y forward, z up, scene units
     angle: float
     distance: float
-    yaw: float
+    yaw: float  # 0, as its probability, from a model that tells rotations
     yaw_probability: float
     share: float
-    pose: numpy.ndarray  # probability of every bin of yaw
+    pose: numpy.ndarray  # probability of every bin of yaw; empty from a model that tells rotations
+    rotation: "numpy.ndarray | None"  # (3, 3), object to camera; None from a model that tells yaws
 
 
 @dataclass
@@ -83,6 +84,7 @@ def _load_library():
     declare("vkopple_seen_background", ctypes.c_uint32, pointer, ctypes.POINTER(ctypes.c_double))
     declare("vkopple_seen_objects", ctypes.POINTER(_Object), pointer, ctypes.POINTER(size))
     declare("vkopple_seen_pose", ctypes.POINTER(ctypes.c_double), pointer, size, ctypes.POINTER(size))
+    declare("vkopple_seen_rotation", ctypes.POINTER(ctypes.c_double), pointer, size)
     declare("vkopple_seen_soft_masks", ctypes.POINTER(ctypes.c_float), pointer, ctypes.POINTER(size),
             ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_int32))
     return library
@@ -160,9 +162,11 @@ def _objects(seen):
     result = []
     for i in range(count.value):
         pose = _library.vkopple_seen_pose(seen, i, ctypes.byref(bins))
+        rotation = _library.vkopple_seen_rotation(seen, i)
         o = objects[i]
         result.append(Object(tuple(o.location), o.angle, o.distance, o.yaw, o.yaw_probability, o.share,
-                             _copy(pose, (bins.value,))))
+                             _copy(pose, (bins.value,)) if pose else numpy.empty(0),
+                             _copy(rotation, (3, 3)) if rotation else None))
     return result
 
 

@@ -89,6 +89,10 @@ uint64_t Normalise::partial_bytes() const {
   return uint64_t{strips_.groups} * strips_.blocks * strips_.strips * 48;
 }
 
+uint64_t Normalise::sum_bytes() const {
+  return uint64_t{strips_.groups} * strips_.blocks * strips_.strips * 32;
+}
+
 TensorSpec Normalise::table() const { return row_major({int64_t{strips_.groups} * strips_.blocks * 16}); }
 
 Normalise::WalkPush Normalise::walk_push() const {

@@ -33,7 +33,10 @@ class Normalise {
   Normalise(const Shape& x, int64_t groups, const NormSurround& surround, const Caps& caps);
 
   const NormStrips& strips() const { return strips_; }
+  /// Room for what either first stage writes.
   uint64_t partial_bytes() const;
+  /// What record_reduce() writes.
+  uint64_t sum_bytes() const;
   TensorSpec table() const;
   /// Invocations of a second stage's workgroup, at most 64.
   uint32_t finish_workgroup() const { return finish_workgroup_; }

@@ -113,8 +113,10 @@ void BatchNorm::record_backward(Recorder& recorder, const Backward& io) const {
   norm.record_reduce(recorder, random, io.x[kX].slice, io.dy[0].slice, table, partials);
   // Sums over the values of all processes, as the mean of a process's: its number of values goes with it.
   if (shares())
-    record_change(recorder, partials,
-                  [peers = options_.peers](std::span<float> values) { peers->average(values); });
+    record_change(recorder, partials.sub(0, norm.sum_bytes()),
+                  [peers = options_.peers, strips = norm.strips()](std::span<float> values) {
+                    share_sums(*peers, strips, values);
+                  });
   recorder.dispatch("batch_norm_gradients", {norm.finish_workgroup(), options_.training ? 1U : 0U},
                     {partials, table, coefficients, io.dx[kGamma].slice, io.dx[kBeta].slice},
                     GradientsPush{norm.strips(), gradient_flags(io)}, {norm.strips().blocks, 1, 1});

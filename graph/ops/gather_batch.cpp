@@ -1,9 +1,8 @@
 #include "graph/ops/gather_batch.h"
 
-#include <algorithm>
-
 #include "graph/kernels/add_scaled.h"
-#include "graph/parallel/host_exchange.h"
+#include "runtime/device.h"
+#include "runtime/transfer.h"
 
 namespace vkopple {
 
@@ -23,12 +22,12 @@ Slice GatherBatch::own_part(const Slice& all) const {
 }
 
 void GatherBatch::record_forward(Recorder& recorder, const Forward& io) const {
-  recorder.copy(io.x[0].slice, own_part(io.y[0].slice));
-  if (!several(peers_)) return;
-  record_change(recorder, io.y[0].slice, [peers = peers_](std::span<float> all) {
-    const size_t part = all.size() / static_cast<size_t>(peers->count());
-    const auto gathered = peers->gather(all.subspan(part * static_cast<size_t>(peers->rank()), part));
-    std::copy(gathered.begin(), gathered.end(), all.begin());
+  if (!several(peers_)) {
+    recorder.copy(io.x[0].slice, io.y[0].slice);
+    return;
+  }
+  recorder.host_step([&device = recorder.device(), peers = peers_, own = io.x[0].slice, all = io.y[0].slice] {
+    upload_values<float>(device, all, peers->gather(download_values<float>(device, own)));
   });
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -180,6 +181,7 @@ TEST_F(CInterface, ProbabilitiesAddUp) {
     double sum = 0;
     for (size_t i = 0; i < bins; ++i) sum += pose[i];
     EXPECT_NEAR(sum, 1, 1e-5);
+    EXPECT_EQ(vkopple_seen_rotation(seen.get(), k), nullptr);
     EXPECT_EQ(pose[std::lround(objects[k].yaw / (2 * M_PI / 12))], objects[k].yaw_probability);
   }
   EXPECT_EQ(vkopple_seen_pose(seen.get(), count, &bins), nullptr);
@@ -260,7 +262,44 @@ TEST_F(CInterface, TellsOfTheModelAndOfARunsLatest) {
   EXPECT_DOUBLE_EQ(info.fov, M_PI / 2);
   EXPECT_DOUBLE_EQ(info.max_depth, 7.2);
   EXPECT_EQ(info.step, 9U);
+  info.struct_size = sizeof info - 1;
+  EXPECT_EQ(vkopple_get_model_info(model.get(), &info), VKOPPLE_WRONG_USE);
+  expect_message({"vkopple_model_info.struct_size", std::to_string(sizeof info - 1)});
   EXPECT_STREQ(vkopple_version(), "0.1.0");
+}
+
+/// What infer tells of a model whose objects turn in space.
+TEST_F(CInterface, ModelsOfRotations) {
+  Config config = test::tiny_config();
+  config.model.orientation = Orientation::kEuler;
+  test::write_model(path(), config);
+  const Picture picture;
+  write_png(folder_ / "room.png", picture.rgb());
+  const auto outcome =
+      test::run_vkopple({"infer", path(), folder_ / "room.png", "--json", "--out", folder_ / "out"});
+  test::expect_success(outcome);
+  const json objects_told = json::parse(outcome.output).at(0).at("objects");
+
+  const ModelPointer model = load(path());
+  vkopple_model_info info{};
+  info.struct_size = sizeof info;
+  ASSERT_EQ(vkopple_get_model_info(model.get(), &info), VKOPPLE_OK) << vkopple_last_error();
+  EXPECT_EQ(info.bins, 0);
+  const SeenPointer seen = see(model.get(), picture.description());
+  size_t count = 0;
+  const vkopple_object* objects = vkopple_seen_objects(seen.get(), &count);
+  ASSERT_EQ(count, 2U);
+  for (size_t k = 0; k < count; ++k) {
+    const double* rotation = vkopple_seen_rotation(seen.get(), k);
+    ASSERT_NE(rotation, nullptr);
+    EXPECT_EQ(std::vector<double>(rotation, rotation + 9), objects_told.at(k).at("rotation"));
+    EXPECT_EQ(objects[k].yaw, 0);
+    EXPECT_EQ(objects[k].yaw_probability, 0);
+    size_t bins = 9;
+    EXPECT_EQ(vkopple_seen_pose(seen.get(), k, &bins), nullptr);
+    EXPECT_EQ(bins, 0U);
+  }
+  EXPECT_EQ(vkopple_seen_rotation(seen.get(), count), nullptr);
 }
 
 TEST_F(CInterface, LoadingNamesWhatIsWrong) {
@@ -283,9 +322,15 @@ TEST_F(CInterface, LoadingNamesWhatIsWrong) {
   options = {3, nullptr, VKOPPLE_FLOAT32};
   EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
   expect_message({"struct_size", "3"});
-  options = {sizeof(vkopple_options), nullptr, 7};
+  options = {sizeof(vkopple_options) + 8, nullptr, VKOPPLE_FLOAT32};
   EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
-  expect_message({"precision", "7"});
+  expect_message({"struct_size", "newer library"});
+  // The last member's end, without what is padding behind it.
+  for (const size_t size : {offsetof(vkopple_options, precision) + sizeof(int32_t), sizeof(vkopple_options)}) {
+    options = {size, nullptr, 7};
+    EXPECT_EQ(vkopple_load(path().c_str(), &options, &model), VKOPPLE_WRONG_USE);
+    expect_message({"precision", "7"});
+  }
   vkopple_free(nullptr);
 }
 

@@ -25,18 +25,23 @@ read -ra flags <<<"$(pkg-config --cflags --libs vkopple)"
 cmake -S "$source_root/examples/c" -B "$work/example" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
 cmake --build "$work/example" >/dev/null
 
-cat >"$work/config.json" <<'CONFIG'
+# What an object's orientation is decides on what is told of it.
+config() { # orientation
+  cat <<CONFIG
 {"model": {"height": 16, "width": 16, "slots": 2, "bins": 12, "code": 12, "depth_width": 2, "object_width": 4,
-           "imagine_width": 1, "lstm": 4},
+           "imagine_width": 1, "lstm": 4, "orientation": "$1"},
  "training": {"batch": 1}, "rooms": {"supersample": 1}}
 CONFIG
-vkopple train "$work/config.json" --data rooms:1 --steps 1 --eval-every 0 --out "$work/run" 2>/dev/null
+}
 { printf 'P6\n23 31\n255\n'; yes 'some colours: 0123456789' | head -c $((3 * 23 * 31)); } >"$work/room.ppm" || true
-
-vkopple infer "$work/run" "$work/room.ppm" --json --out "$work/seen" >"$work/infer.json"
-"$work/see" "$work/run" "$work/room.ppm" >"$work/see.txt"
-"$work/example/see" "$work/run" "$work/room.ppm" | cmp - "$work/see.txt"
-[[ $(wc -l <"$work/see.txt") == 3 ]] || fail "the C example did not tell of two objects: $(cat "$work/see.txt")"
+for kind in yaw euler; do
+  config $kind >"$work/$kind.json"
+  vkopple train "$work/$kind.json" --data rooms:1 --steps 1 --eval-every 0 --out "$work/$kind" 2>/dev/null
+  vkopple infer "$work/$kind" "$work/room.ppm" --json --out "$work/seen" >"$work/$kind.infer.json"
+  "$work/see" "$work/$kind" "$work/room.ppm" >"$work/$kind.see.txt"
+  [[ $(wc -l <"$work/$kind.see.txt") == 3 ]] || fail "the C example did not tell of two objects: $(cat "$work/$kind.see.txt")"
+done
+"$work/example/see" "$work/yaw" "$work/room.ppm" | cmp - "$work/yaw.see.txt"
 if "$work/see" /absent "$work/room.ppm" 2>"$work/refusal"; then fail "the C example read a model that is not there"; fi
 grep -q /absent "$work/refusal"
 
@@ -46,30 +51,37 @@ if ! command -v "$python" >/dev/null; then
   echo "installed_test: passed; not compared number by number, and without the Python example: there is no $python"
   exit 0
 fi
-"$python" - "$work/infer.json" "$work/see.txt" <<'COMPARE'
+"$python" - "$work" <<'COMPARE'
 import json, sys
-objects = json.load(open(sys.argv[1]))[0]["objects"]
-lines = [line.split() for line in open(sys.argv[2])][1:]
-told = [[float(v) for v in line[2:]] for line in lines]
-wanted = [[o["share"], *o["location"], o["yaw"], o["yaw_probability"]] for o in objects]
-assert told == wanted and len(told) == 2, (told, wanted)
+for kind in "yaw", "euler":
+    path = f"{sys.argv[1]}/{kind}"
+    objects = json.load(open(f"{path}.infer.json"))[0]["objects"]
+    lines = [line.split() for line in open(f"{path}.see.txt")][1:]
+    told = [[float(v) for v in line[2:]] for line in lines]
+    turned = [o["rotation"] if kind == "euler" else [o["yaw"], o["yaw_probability"]] for o in objects]
+    wanted = [[o["share"], *o["location"], *t] for o, t in zip(objects, turned)]
+    assert told == wanted and len(told) == 2, (kind, told, wanted)
 COMPARE
 if ! "$python" -c 'import numpy' 2>/dev/null; then
   echo "installed_test: passed without the Python example: $python has no numpy (VKOPPLE_PYTHON names another)"
   exit 0
 fi
 export VKOPPLE_LIBRARY=$library_folder/libvkopple.so.0
-"$python" "$source_root/examples/python/see.py" "$work/run" "$work/room.ppm" --save "$work/arrays" >"$work/python.json"
+for kind in yaw euler; do
+  "$python" "$source_root/examples/python/see.py" "$work/$kind" "$work/room.ppm" --save "$work/$kind.arrays" >"$work/$kind.python.json"
+done
 "$python" - "$work" <<'COMPARE'
 import json, sys
 import numpy
 work = sys.argv[1]
-wanted, told = (json.load(open(f"{work}/{name}.json")) for name in ("infer", "python"))
-assert told == wanted, (told, wanted)
-arrays = numpy.load(f"{work}/arrays/room.npz")
-shares = [float((arrays["mask"] == k).mean()) for k in range(3)]
-assert shares == [o["share"] for o in wanted[0]["objects"]] + [wanted[0]["background"]["share"]], shares
-depths = [float(v) for v in open(f"{work}/see.txt").readline().split()[1:]]
-assert numpy.float32(depths).tolist() == [arrays["depth"].min(), arrays["depth"].max()], depths
+for kind in "yaw", "euler":
+    path = f"{work}/{kind}"
+    wanted, told = (json.load(open(f"{path}.{name}.json")) for name in ("infer", "python"))
+    assert told == wanted, (kind, told, wanted)
+    arrays = numpy.load(f"{path}.arrays/room.npz")
+    shares = [float((arrays["mask"] == k).mean()) for k in range(3)]
+    assert shares == [o["share"] for o in wanted[0]["objects"]] + [wanted[0]["background"]["share"]], (kind, shares)
+    depths = [float(v) for v in open(f"{path}.see.txt").readline().split()[1:]]
+    assert numpy.float32(depths).tolist() == [arrays["depth"].min(), arrays["depth"].max()], (kind, depths)
 COMPARE
 echo "installed_test: passed"

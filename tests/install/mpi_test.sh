@@ -5,9 +5,11 @@ vkopple=$1 mpirun=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "mpi_test: $*" >&2; exit 1; }
-# Processes of this test share what cores there are.
+# Processes of this test share what cores there are. The variables are those of Open MPI, 4 and from 5 on; MPICH needs
+# none, and knows no such flags.
 export LP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-two=("$mpirun" -n 2 --oversubscribe "$vkopple")
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
+two=("$mpirun" -n 2 "$vkopple")
 
 cat >"$work/config.json" <<'CONFIG'
 {"model": {"height": 16, "width": 16, "slots": 2, "bins": 12, "code": 12, "depth_width": 2, "object_width": 4,
@@ -36,12 +38,13 @@ for ((i = 0; i < 600; ++i)); do
   [[ -f $work/killed/log.jsonl && $(wc -l <"$work/killed/log.jsonl") -ge 2 ]] && break
   sleep 0.1
 done
-victim=$(pgrep -P "$launcher" -f "$work/killed" | tail -1)
+# Some launchers start processes by a helper, so that they are not their children.
+victim=$(pgrep -f "$work/killed" | grep -vx "$launcher" | tail -1)
 [[ -n $victim ]] || fail "there is no second process"
 kill -KILL "$victim"
 code=0
 wait "$launcher" || code=$?
 ((code != 0)) || fail "a killed process passed for a success"
-grep -q 'signal 9' "$work/errors" || fail "the launcher does not tell of the killed process: $(cat "$work/errors")"
+grep -qE 'signal 9|KILLED BY SIGNAL: 9' "$work/errors" || fail "the launcher does not tell of the killed process: $(cat "$work/errors")"
 grep -q 'go on from the last checkpoint with --resume' "$work/errors" || fail "no advice: $(cat "$work/errors")"
 echo "mpi_test: passed"

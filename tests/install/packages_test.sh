@@ -29,8 +29,12 @@ holds vkopple bin/vkopple
 holds vkopple share/bash-completion/completions/vkopple
 holds vkopple share/zsh/vendor-completions/_vkopple
 holds vkopple share/fish/vendor_completions.d/vkopple.fish
-for command in "" $("$work/tree/usr/bin/vkopple" completion bash | sed -nE "s/^      ([a-z]+)\) words=.*/-\1/p"); do
-  grep -qE "share/man/man1/vkopple$command\.1(\.gz)?$" "$work/vkopple.list" || fail "there is no manual of vkopple$command"
+read_page() { case $1 in *.gz) zcat "$1" ;; *) cat "$1" ;; esac; }
+for command in "" $("$work/tree/usr/bin/vkopple" completion bash | sed -nE "s/^      ([a-z-]+)\) words=.*/-\1/p"); do
+  page=$(echo "$work/tree/usr/share/man/man1/vkopple$command".1*)
+  [[ -f $page ]] || fail "there is no manual of vkopple$command"
+  read_page "$page" >"$work/page"
+  grep -q '^\.TH' "$work/page" || fail "the manual of vkopple$command is no manual page: $(cat "$work/page")"
 done
 holds libvkopple0 lib/libvkopple.so.0
 holds libvkopple-dev include/vkopple.h

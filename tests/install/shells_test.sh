@@ -39,7 +39,11 @@ for command in $(complete_words vkopple ""); do
     [[ $options == *" $option "* ]] || fail "vkopple $command: $option is not completed"
   done
   "$vkopple" manual "$command" >"$work/$command.1"
+  # Every example is a command line of the program.
+  other=$(awk '/^\.SH/ { within = /EXAMPLES/ } within && first && !/vkopple/ { print } { first = /^\.nf/ }' "$work/$command.1")
+  [[ -z $other ]] || fail "the manual of $command has examples without vkopple: $other"
 done
+grep -q '^\.SH NOTES' "$work/convert.1" || fail "the manual of convert lists no formats"
 "$vkopple" manual >"$work/vkopple.1"
 
 if command -v zsh >/dev/null; then
@@ -66,6 +70,8 @@ if command -v mandoc >/dev/null; then
   mandoc -T ascii "$work/train.1" | col -b >"$work/train.txt"
   grep -q -- '--checkpoint-every UINT' "$work/train.txt" || fail "the manual of train: $(cat "$work/train.txt")"
   grep -q 'mpirun -n 4 vkopple train full' "$work/train.txt" || fail "examples are missing in the manual of train"
+  mandoc -T ascii "$work/predict.1" | col -b >"$work/predict.txt"
+  grep -qe '--frames 0,2,4 \\$' "$work/predict.txt" || fail "a long example of predict is not one command line"
 else
   skipped+=(mandoc)
 fi

@@ -15,12 +15,15 @@ Config tiny_config() {
                        "tiny");
 }
 
-void write_tiny_model(const std::filesystem::path& path, uint64_t stage) {
-  const Config config = tiny_config();
+void write_model(const std::filesystem::path& path, const Config& config, uint64_t stage) {
   ModelStore store(test_device(), config.model);
   store.initialise(3);
   save_checkpoint(path, store, config,
                   {.step = 4 + 5 * stage, .stage = stage, .stage_step = 4, .seed = 3, .data = "rooms:7"});
+}
+
+void write_tiny_model(const std::filesystem::path& path, uint64_t stage) {
+  write_model(path, tiny_config(), stage);
 }
 
 }  // namespace vkopple::test

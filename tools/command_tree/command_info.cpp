@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace vkopple {
 namespace {
@@ -38,23 +39,41 @@ OptionInfo describe_option(const CLI::Option& option) {
   return info;
 }
 
-/// A footer is "Example: COMMAND" or "Examples: COMMAND", then lines with one more each.
-std::vector<std::string> examples_in(const std::string& footer) {
+struct Footer {
   std::vector<std::string> examples;
-  std::istringstream lines(footer);
+  std::string notes;
+};
+
+/// "Example: COMMAND" or "Examples: COMMAND", then lines with one more each below the first, and deeper ones
+/// with the rest of a long one; what follows are notes.
+Footer read_footer(const std::string& text) {
+  constexpr size_t kColumn = std::string_view("Examples: ").size();
+  Footer footer;
+  std::istringstream lines(text);
+  bool in_examples = true;
   for (std::string line; std::getline(lines, line);) {
-    for (const std::string_view start : {"Example:", "Examples:"})
-      if (line.starts_with(start)) line.erase(0, start.size());
-    const size_t begin = line.find_first_not_of(' ');
-    if (begin != std::string::npos) examples.push_back(line.substr(begin));
+    for (const std::string_view start : {"Example: ", "Examples: "})
+      if (line.starts_with(start)) line.replace(0, start.size(), kColumn, ' ');
+    const size_t begin = std::min(line.find_first_not_of(' '), line.size());
+    in_examples = in_examples && begin >= kColumn;
+    if (!in_examples)
+      footer.notes += line + "\n";
+    else if (begin == kColumn || footer.examples.empty())
+      footer.examples.push_back(line.substr(begin));
+    else
+      footer.examples.back() += " \\\n    " + line.substr(begin);
   }
-  return examples;
+  return footer;
 }
 
 }  // namespace
 
 CommandInfo describe(const CLI::App& command) {
-  CommandInfo info{command.get_name(), command.get_description(), examples_in(command.get_footer()), {}};
+  Footer footer = read_footer(command.get_footer());
+  CommandInfo info{.name = command.get_name(),
+                   .description = command.get_description(),
+                   .examples = std::move(footer.examples),
+                   .notes = std::move(footer.notes)};
   for (const CLI::Option* option : command.get_options({})) info.options.push_back(describe_option(*option));
   std::stable_partition(info.options.begin(), info.options.end(),
                         [](const OptionInfo& o) { return o.positional; });

@@ -23,7 +23,8 @@ struct OptionInfo {
 struct CommandInfo {
   std::string name;
   std::string description;
-  std::vector<std::string> examples;  ///< command lines
+  std::vector<std::string> examples;  ///< command lines, with a backslash where they go on below
+  std::string notes;                  ///< lines of what else there is to tell; may be empty
   std::vector<OptionInfo> options;    ///< positional ones first, in their order
 };
 

@@ -85,6 +85,7 @@ std::string command_manual(const CommandInfo& command, const std::string& versio
   for (const OptionInfo& option : command.options) text += option_entry(option);
   if (!command.examples.empty()) text += ".SH EXAMPLES\n";
   for (const std::string& example : command.examples) text += ".nf\n" + escaped(example) + "\n.fi\n";
+  if (!command.notes.empty()) text += ".SH NOTES\n.nf\n" + escaped(command.notes) + ".fi\n";
   return text + kExitStatus + kEnvironment + ".SH SEE ALSO\n" + bold("vkopple") + "(1)\n";
 }
 

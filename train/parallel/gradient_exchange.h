@@ -1,8 +1,10 @@
 #pragma once
 
 #include <future>
+#include <list>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "graph/parallel/peers.h"
@@ -24,8 +26,23 @@ class GradientExchange {
   double hidden_seconds() const { return hidden_seconds_; }
 
  private:
+  /// One under way, whose thread works on `values`: it stays where it is, and waits for the thread at its end.
+  struct Exchange {
+    Exchange(std::string name, std::vector<float> numbers)
+        : group(std::move(name)), values(std::move(numbers)) {}
+    ~Exchange() {
+      if (done.valid()) done.wait();
+    }
+    Exchange(const Exchange&) = delete;
+    Exchange& operator=(const Exchange&) = delete;
+
+    std::string group;
+    std::vector<float> values;
+    std::shared_future<void> done;
+  };
+
   Peers& peers_;
-  std::vector<std::pair<std::string, std::shared_future<std::vector<float>>>> under_way_;
+  std::list<Exchange> under_way_;
   double begun_at_ = 0;  ///< Peers::seconds() then
   double hidden_seconds_ = 0;
 };

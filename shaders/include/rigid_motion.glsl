@@ -1,5 +1,5 @@
-// The motions of camera and objects. Include precise.glsl and declare READ1 bindings location, omega (with TURNS: turns, matrices) and
-// m23 before.
+// The motions of camera and objects. Include precise.glsl and turns.glsl and declare READ1 bindings omega (with TURNS: turns, matrices)
+// and m23 before.
 #include "camera_motion.glsl"
 
 #ifdef TURNS
@@ -11,4 +11,3 @@ mat3 object_turn(uint object) {
   return mat3(turn.x, turn.y, 0, -turn.y, turn.x, 0, 0, 0, 1);
 }
 #endif
-#define object_vector(name, object) vec3(load1(name, (object) * 3), load1(name, (object) * 3 + 1), load1(name, (object) * 3 + 2))

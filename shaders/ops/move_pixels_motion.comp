@@ -4,6 +4,7 @@
 #include "access.glsl"
 #include "planes.glsl"
 #include "precise.glsl"
+#include "turns.glsl"
 
 // Gradients of what moves the objects, sums over all pixels in a fixed order. With g = M^T dmoved, q = Rz(omega)(P - X) and u the z
 // axis: dv = sum g, domega = sum g (u x q), dX = (1 - Rz^T) dv. `strips`: one invocation sums g and g (u x q) over every
@@ -37,7 +38,7 @@ void main() {
   uint image = object / p.slots;
   mat3 turn = camera_turn(image);
   mat3 own = object_turn(object);
-  vec3 at = object_vector(location, object);
+  vec3 at = load_vector(location, object);
   uint points_plane = image * 3 * p.pixels;
   uint moved_plane = (object + image) * 3 * p.pixels;  // each image before has a background too
   vec4 sum = vec4(0);

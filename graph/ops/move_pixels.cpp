@@ -4,6 +4,7 @@
 
 #include "graph/kernels/expect.h"
 #include "graph/kernels/rigid_motion.h"
+#include "graph/kernels/strips.h"
 #include "graph/kernels/words.h"
 
 namespace vkopple {
@@ -50,7 +51,7 @@ std::vector<TensorSpec> MovePixels::infer(std::span<const TensorSpec> x) const {
 
 Needs MovePixels::needs(std::span<const TensorSpec> x, const Caps&) const {
   const RigidMotion sizes = sizes_of(x[kPoints].shape, x[kOmega].shape);
-  return {.backward_scratch = uint64_t{16} * sizes.images * sizes.slots * motion_strips(sizes),
+  return {.backward_scratch = uint64_t{16} * sizes.images * sizes.slots * pixel_strips(sizes.pixels),
           .inputs_for_backward = 1U << kPoints | 1U << kLocation | 1U << kOmega | 1U << kM23,
           .outputs_for_backward = 0};
 }
@@ -69,7 +70,7 @@ void MovePixels::record_backward(Recorder& recorder, const Backward& io) const {
 
 void MovePixels::record_motion_gradients(Recorder& recorder, const Backward& io) const {
   const RigidMotion sizes = sizes_of(io.x[kPoints].shape(), io.x[kOmega].shape());
-  const uint32_t strips = motion_strips(sizes);
+  const uint32_t strips = pixel_strips(sizes.pixels);
   const MotionPush push{.sizes = sizes,
                         .strips = strips,
                         .want_location = io.wants(kLocation) ? 1U : 0U,

@@ -4,6 +4,7 @@
 
 #include "graph/kernels/expect.h"
 #include "graph/kernels/rigid_motion.h"
+#include "graph/kernels/strips.h"
 #include "graph/kernels/words.h"
 
 namespace vkopple {
@@ -55,7 +56,7 @@ std::vector<TensorSpec> TurnPixels::infer(std::span<const TensorSpec> x) const {
 
 Needs TurnPixels::needs(std::span<const TensorSpec> x, const Caps&) const {
   const RigidMotion sizes = sizes_of(x[kPoints].shape, x[kTurn].shape);
-  return {.backward_scratch = kStripBytes * sizes.images * sizes.slots * motion_strips(sizes),
+  return {.backward_scratch = kStripBytes * sizes.images * sizes.slots * pixel_strips(sizes.pixels),
           .inputs_for_backward = 1U << kPoints | 1U << kLocation | 1U << kTurn | 1U << kM23,
           .outputs_for_backward = 0};
 }
@@ -74,7 +75,7 @@ void TurnPixels::record_backward(Recorder& recorder, const Backward& io) const {
 void TurnPixels::record_motion_gradients(Recorder& recorder, const Backward& io) const {
   const RigidMotion sizes = sizes_of(io.x);
   const MotionPush push{.sizes = sizes,
-                        .strips = motion_strips(sizes),
+                        .strips = pixel_strips(sizes.pixels),
                         .want_location = io.wants(kLocation) ? 1U : 0U,
                         .want_velocity = io.wants(kVelocity) ? 1U : 0U,
                         .want_turn = io.wants(kTurn) ? 1U : 0U,

@@ -1,4 +1,4 @@
-#include "graph/ops/turn_pixels.h"
+#include "graph/ops/move_pixels.h"
 
 #include <fmt/format.h>
 
@@ -46,7 +46,7 @@ void check_turn_pixels(CheckList& list) {
   // 31 x 37 pixels are more than one strip of the reductions.
   for (const Case& c : {Case{1, 1, 1, 1}, Case{3, 3, 5, 7}, Case{2, 2, 31, 37}, Case{2, 5, 9, 8}})
     list.push_back({.label = fmt::format("{} x {} slots, {} x {}", c.batch, c.slots, c.height, c.width),
-                    .op = std::make_shared<TurnPixels>(),
+                    .op = std::make_shared<MovePixels>(),
                     .inputs = {row_major({c.batch, 3, c.height, c.width}), row_major({c.batch, c.slots, 3}),
                                row_major({c.batch, c.slots, 3}), row_major({c.batch, c.slots, 3, 3}),
                                row_major({c.batch, 4, 4})},

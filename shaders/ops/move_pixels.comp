@@ -25,11 +25,7 @@ layout(push_constant) uniform Push {
 
 READ1(0, location)
 READ1(1, velocity)
-#ifdef TURNS
 READ1(2, turns)
-#else
-READ1(2, omega)
-#endif
 READ1(3, m23)
 #ifdef MOVES
 READ1(4, points)

@@ -53,6 +53,9 @@ struct Backward {
   Slice scratch;   ///< Needs::backward_scratch bytes, of unknown content
   bool wants(size_t i) const { return static_cast<bool>(dx[i]); }
   uint32_t accumulates(size_t i) const { return accumulate[i]; }
+  /// Bit i: what wants(i) or accumulates(i) says, of the first 32 inputs.
+  uint32_t wants_mask() const;
+  uint32_t accumulates_mask() const;
 };
 
 /// One operation: shapes, and the recording of its forward and backward kernels. Immutable once made, so that

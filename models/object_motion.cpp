@@ -12,7 +12,6 @@
 #include "graph/ops/rotation_posterior.h"
 #include "graph/ops/rotation_vector.h"
 #include "graph/ops/transform_points.h"
-#include "graph/ops/turn_pixels.h"
 #include "graph/ops/vector_rotation.h"
 #include "graph/ops/weighted_sum.h"
 #include "models/learned_motion.h"
@@ -76,8 +75,10 @@ ObjectMotion object_motion(const ModelConfig& config, const ObjectState& o1, con
 
 Value moved_pixels(const ObjectState& o2, const ObjectMotion& motion, const CameraMotion& camera,
                    LayerFactory* learned, Value points) {
-  if (motion.turn) return turn_pixels(points, o2.location, motion.velocity, motion.turn, camera.m23);
-  if (learned == nullptr) return move_pixels(points, o2.location, motion.velocity, motion.omega, camera.m23);
+  if (learned == nullptr) {
+    const Value turns = motion.turn ? motion.turn : motion.omega;
+    return move_pixels(points, o2.location, motion.velocity, turns, camera.m23);
+  }
   const Value objects = concat(
       {camera.slots_ego23, o2.location, motion.predicted.location, motion.velocity, motion.direction}, 2);
   return learned_pixels(*learned, objects, camera.still, points);

@@ -9,15 +9,6 @@ Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-Vector3 times(const Matrix3& m, const Vector3& v) {
-  Vector3 out{};
-  for (size_t row = 0; row < 3; ++row)
-    for (size_t column = 0; column < 3; ++column) out[row] += m[row][column] * v[column];
-  return out;
-}
-
-double norm(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 Vector3 unit(const Vector3& v) {
   const double size = norm(v);
   return {v[0] / size, v[1] / size, v[2] / size};
@@ -58,6 +49,15 @@ Matrix3 product(const Matrix3& a, const Matrix3& b) {
       for (size_t k = 0; k < 3; ++k) out[i][j] += a[i][k] * b[k][j];
   return out;
 }
+
+Vector3 times(const Matrix3& m, const Vector3& v) {
+  Vector3 out{};
+  for (size_t row = 0; row < 3; ++row)
+    for (size_t column = 0; column < 3; ++column) out[row] += m[row][column] * v[column];
+  return out;
+}
+
+double norm(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 Matrix3 transposed(const Matrix3& m) {
   Matrix3 out{};

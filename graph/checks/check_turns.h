@@ -14,6 +14,8 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;  ///< rows
 Matrix3 identity3();
 Matrix3 product(const Matrix3& a, const Matrix3& b);
 Matrix3 transposed(const Matrix3& m);
+Vector3 times(const Matrix3& m, const Vector3& v);
+double norm(const Vector3& v);
 
 /// Matrix or vector number `object` of a tensor (B, K, 3, 3) or (B, K, 3).
 Matrix3 matrix_at(const HostTensor& tensor, size_t object);

@@ -14,7 +14,7 @@ namespace {
 Vector3 vector_of(const Matrix3& m) {
   const Matrix3 r = nearest_turn(m);
   const Vector3 sine{(r[2][1] - r[1][2]) / 2, (r[0][2] - r[2][0]) / 2, (r[1][0] - r[0][1]) / 2};
-  const double size = std::sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]);
+  const double size = norm(sine);
   const double angle = std::atan2(size, (r[0][0] + r[1][1] + r[2][2] - 1) / 2);
   const double scale = size > 0 ? angle / size : 1;
   return {sine[0] * scale, sine[1] * scale, sine[2] * scale};
@@ -35,7 +35,7 @@ std::function<void(HostTensors&)> turns_by(double angle) {
   return [angle](HostTensors& x) {
     for (size_t i = 0; i < x[0].values.size() / 9; ++i) {
       Vector3 axis = matrix_at(x[0], i)[0];
-      const double size = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+      const double size = norm(axis);
       for (double& a : axis) a *= angle / size;
       set_matrix(x[0], i, turn_about(axis));
     }

@@ -1,7 +1,5 @@
 #include "graph/kernels/rigid_motion.h"
 
-#include <algorithm>
-
 namespace vkopple {
 namespace {
 
@@ -14,9 +12,6 @@ struct MovePush {
 /// An invocation's pixels, enough to make up for loading what moves them.
 constexpr uint32_t kPixelsForward = 16;
 constexpr uint32_t kPixelsBackward = 4;
-/// Pixels that one invocation sums at first, as long as that leaves the second one few enough.
-constexpr uint32_t kStripPixels = 64;
-constexpr uint32_t kMostStrips = 512;
 
 MovePush push_of(const RigidMotion& sizes, uint32_t pixels, bool accumulate) {
   return {sizes, (sizes.pixels + pixels - 1) / pixels, accumulate ? 1U : 0U};
@@ -38,10 +33,6 @@ void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, Turns tu
   recorder.dispatch_flat(turns == Turns::kAngles ? "move_pixels.points" : "move_pixels.points_turns",
                          static_cast<uint64_t>(sizes.images) * push.strips,
                          {motion.location, motion.velocity, motion.turn, motion.m23, dmoved, dpoints}, push);
-}
-
-uint32_t motion_strips(const RigidMotion& sizes) {
-  return std::min(kMostStrips, (sizes.pixels + kStripPixels - 1) / kStripPixels);
 }
 
 }  // namespace vkopple

@@ -30,8 +30,4 @@ void record_moved(Recorder& recorder, const RigidMotion& sizes, Turns turns, con
 void record_moved_dpoints(Recorder& recorder, const RigidMotion& sizes, Turns turns, const MotionSlices& motion,
                           const Slice& dmoved, const Slice& dpoints, bool accumulate);
 
-/// Invocations that share the pixels of an object when what comes back to its motion is summed: as many pixels
-/// to each as leave few enough of them.
-uint32_t motion_strips(const RigidMotion& sizes);
-
 }  // namespace vkopple

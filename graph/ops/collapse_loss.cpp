@@ -48,10 +48,8 @@ void CollapseLoss::record_forward(Recorder& recorder, const Forward& io) const {
 
 void CollapseLoss::record_backward(Recorder& recorder, const Backward& io) const {
   auto push = push_for(io.x[2].shape());
-  for (uint32_t i = 0; i < 3; ++i) {
-    push.wants |= (io.wants(i) ? 1U : 0U) << i;
-    push.accumulates |= io.accumulates(i) << i;
-  }
+  push.wants = io.wants_mask();
+  push.accumulates = io.accumulates_mask();
   recorder.dispatch_flat("collapse_loss.backward", words(io.x[2]),
                          {io.x[0].slice, io.x[1].slice, io.x[2].slice, io.x[3].slice, io.dy[0].slice,
                           io.dx[0].slice, io.dx[1].slice, io.dx[2].slice},

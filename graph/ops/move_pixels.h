@@ -5,9 +5,10 @@
 namespace vkopple {
 
 /// Where each pixel goes if it belongs to each object or to the background, which is last: (B, K+1, 3, H, W) in
-/// the next camera's frame. Object k: M₂₃ [Rz(ω)(P − X) + X + v]; background: M₂₃ P. Row-major points P (B, 3,
-/// H, W), location X and velocity v (B, K, 3), ω (B, K) in radians, M₂₃ (B, 4, 4) affine, which receives no
-/// gradient.
+/// the next camera's frame. Object k: M₂₃ [R (P − X) + X + v]; background: M₂₃ P. Row-major points P (B, 3, H,
+/// W), location X and velocity v (B, K, 3), M₂₃ (B, 4, 4) affine, which receives no gradient. Turns are (B, K),
+/// angles ω in radians about the vertical, R = Rz(ω); or R itself, (B, K, 3, 3), taken as it is, a rotation or
+/// not.
 class MovePixels : public Op {
  public:
   std::string_view name() const override { return "move_pixels"; }
@@ -21,6 +22,6 @@ class MovePixels : public Op {
   void record_motion_gradients(Recorder& recorder, const Backward& io) const;
 };
 
-Value move_pixels(Value points, Value location, Value velocity, Value omega, Value m23);
+Value move_pixels(Value points, Value location, Value velocity, Value turns, Value m23);
 
 }  // namespace vkopple

@@ -2,17 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "graph/kernels/expect.h"
+#include "graph/kernels/strips.h"
 #include "graph/kernels/words.h"
 
 namespace vkopple {
 namespace {
-
-/// Pixels that one invocation sums at first, as long as that leaves the second one few enough.
-constexpr uint32_t kStripPixels = 64;
-constexpr uint32_t kMostStrips = 512;
 
 struct PixelConditionPush {
   uint32_t samples;  ///< B·S
@@ -29,7 +24,7 @@ PixelConditionPush push_of(const Shape& shared, const Shape& points, uint32_t ac
           .slots = u32(shared[1]),
           .shared = u32(shared[2]),
           .pixels = pixels,
-          .strips = std::min(kMostStrips, (pixels + kStripPixels - 1) / kStripPixels),
+          .strips = pixel_strips(pixels),
           .accumulate = accumulate};
 }
 

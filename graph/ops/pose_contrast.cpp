@@ -59,10 +59,8 @@ void PoseContrast::record_forward(Recorder& recorder, const Forward& io) const {
 
 void PoseContrast::record_backward(Recorder& recorder, const Backward& io) const {
   auto push = push_for(io.x[0].shape());
-  for (uint32_t i = 0; i < 3; ++i) {
-    push.wants |= (io.wants(i) ? 1U : 0U) << i;
-    push.accumulates |= io.accumulates(i) << i;
-  }
+  push.wants = io.wants_mask();
+  push.accumulates = io.accumulates_mask();
   const std::vector<uint32_t> divergence{static_cast<uint32_t>(divergence_)};
   recorder.dispatch_flat(
       "pose_contrast.score", objects(push),

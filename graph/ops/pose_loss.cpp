@@ -47,10 +47,8 @@ void PoseLoss::record_forward(Recorder& recorder, const Forward& io) const {
 
 void PoseLoss::record_backward(Recorder& recorder, const Backward& io) const {
   auto push = push_for(io.x[0].shape());
-  for (uint32_t i = 0; i < 3; ++i) {
-    push.wants |= (io.wants(i) ? 1U : 0U) << i;
-    push.accumulates |= io.accumulates(i) << i;
-  }
+  push.wants = io.wants_mask();
+  push.accumulates = io.accumulates_mask();
   const auto divergence = static_cast<uint32_t>(divergence_);
   if (io.wants(0) || io.wants(1))
     recorder.dispatch_flat(

@@ -1,14 +1,13 @@
-// The motions of camera and objects. Include precise.glsl and declare READ1 bindings location, omega (with TURNS: turns, matrices) and
-// m23 before.
+// The motions of camera and objects. Include precise.glsl and turns.glsl and declare READ1 bindings turns (angles, or matrices with
+// TURNS) and m23 before.
 #include "camera_motion.glsl"
 
 #ifdef TURNS
 mat3 object_turn(uint object) { return load_matrix(turns, object); }
 #else
 mat3 object_turn(uint object) {
-  float angle = load1(omega, object);
+  float angle = load1(turns, object);
   vec2 turn = precise_cos_sin(angle);
   return mat3(turn.x, turn.y, 0, -turn.y, turn.x, 0, 0, 0, 1);
 }
 #endif
-#define object_vector(name, object) vec3(load1(name, (object) * 3), load1(name, (object) * 3 + 1), load1(name, (object) * 3 + 2))

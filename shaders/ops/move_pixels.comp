@@ -25,11 +25,7 @@ layout(push_constant) uniform Push {
 
 READ1(0, location)
 READ1(1, velocity)
-#ifdef TURNS
 READ1(2, turns)
-#else
-READ1(2, omega)
-#endif
 READ1(3, m23)
 #ifdef MOVES
 READ1(4, points)
@@ -53,8 +49,8 @@ void main() {
   if (slot < p.slots) {
     uint object = image * p.slots + slot;
     mat3 own = object_turn(object);
-    vec3 at = object_vector(location, object);
-    shift += turn * (at + object_vector(velocity, object) - own * at);
+    vec3 at = load_vector(location, object);
+    shift += turn * (at + load_vector(velocity, object) - own * at);
     turn = turn * own;
   }
   for (uint pixel = i - hypothesis * p.strips; pixel < p.pixels; pixel += p.strips)

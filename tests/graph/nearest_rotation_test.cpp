@@ -77,13 +77,6 @@ INSTANTIATE_TEST_SUITE_P(Matrices, DegenerateTest,
                                          Nine{0, 0, 0.5F, 0, 0, 0, 0, 0, 0},  // rank 1
                                          Nine{0, 1, 0, 1, 0, 0, 0, 0, 1}));   // two axes exchanged
 
-Vector3 times(const Matrix3& m, const Vector3& v) {
-  Vector3 out{};
-  for (size_t i = 0; i < 3; ++i)
-    for (size_t j = 0; j < 3; ++j) out[i] += m[i][j] * v[j];
-  return out;
-}
-
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // diag(2, 1, -1): the sums are 2 + 1, 2 - 1 and 0. The gradient R [h]x solves G h = g, G = tr(P) 1 - P with P =

@@ -24,11 +24,12 @@ int fail(int code, const std::string& message) {
   return code;
 }
 
-/// What could not be written is known only when it leaves the buffer.
+/// What could not be written is known only when it leaves the buffer; a driver may have had it leave before.
 int check_output() {
-  if (std::fflush(stdout) == 0) return 0;
-  return fail(kFailed,
-              fmt::format("the results cannot be written to standard output: {}", std::strerror(errno)));
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return fail(kFailed, fmt::format("the results cannot be written to standard output: {}",
+                                   errno != 0 ? std::strerror(errno) : "is it full, or closed?"));
 }
 
 int run(int argc, char** argv) {

@@ -1,6 +1,8 @@
 #include "models/training_config.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace vkopple {
 namespace {
@@ -32,6 +34,15 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   object.integer("steps", steps, 1, 1'000'000'000'000);
   if (steps > 0) s.steps = steps;
   object.number("learning_rate", s.learning_rate, kSmallestRate, 1);
+  object.integer("warmup", s.warmup, 0, 1'000'000'000);
+  double final_rate = 0;
+  object.number("final_learning_rate", final_rate, 0, 1);
+  if (object.has("final_learning_rate")) s.final_learning_rate = final_rate;
+  if (s.final_learning_rate && !s.steps)
+    object.refuse("final_learning_rate", "needs the stage's steps, at whose end it is reached; give them");
+  double reg = 0;
+  object.number("reg", reg, 0, 1e6);
+  if (object.has("reg")) s.reg = reg;
   object.integer("batch", s.batch, 1, kLargestBatch);
   s.rooms = read_rooms_config(object.object("rooms"), defaults.rooms);
   object.finish();
@@ -52,6 +63,10 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& ro
                                 {"hypotheses", kHypothesesNames[static_cast<std::size_t>(s.hypotheses)]}};
   if (s.steps) result["steps"] = *s.steps;
   result["learning_rate"] = s.learning_rate;
+  // Left out where they say nothing: checkpoints stay as they were before there were schedules.
+  if (s.warmup > 0) result["warmup"] = s.warmup;
+  if (s.final_learning_rate) result["final_learning_rate"] = *s.final_learning_rate;
+  if (s.reg) result["reg"] = *s.reg;
   result["batch"] = s.batch;
   const nlohmann::ordered_json base = write_rooms_config(rooms);
   const nlohmann::ordered_json mine = write_rooms_config(s.rooms);
@@ -82,6 +97,17 @@ void read_stages(JsonObject& object, TrainingConfig& c, const ModelConfig& model
 
 bool TrainingStage::learns(Network network) const {
   return std::find(networks.begin(), networks.end(), network) != networks.end();
+}
+
+double TrainingStage::learning_rate_at(std::uint64_t step) const {
+  double rate = learning_rate;
+  if (final_learning_rate && steps) {
+    const double done = std::min(1.0, static_cast<double>(step) / static_cast<double>(*steps));
+    rate = *final_learning_rate +
+           (learning_rate - *final_learning_rate) * (1 + std::cos(std::numbers::pi * done)) / 2;
+  }
+  const auto warm = static_cast<double>(warmup);
+  return warmup > 0 ? rate * std::min(1.0, (static_cast<double>(step) + 1) / warm) : rate;
 }
 
 std::vector<Network> networks_of(const ModelConfig& model) {

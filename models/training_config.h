@@ -32,8 +32,15 @@ struct TrainingStage {
   Hypotheses hypotheses = Hypotheses::kAll;
   std::optional<std::int64_t> steps;  ///< absent: to the end of training; only the last stage's may be
   double learning_rate = 3e-4;
+  std::int64_t warmup = 0;  ///< steps over which the learning rate grows evenly from 0
+  /// To which the learning rate falls, along half a cosine over the stage's steps; absent: it stays.
+  std::optional<double> final_learning_rate;
+  std::optional<double> reg;  ///< in place of ModelConfig::reg
   int batch = 20;
   RoomsConfig rooms;
+
+  /// In the stage's step `step`, counted from 0.
+  double learning_rate_at(std::uint64_t step) const;
 
   bool learns(Network network) const;
   bool operator==(const TrainingStage&) const = default;

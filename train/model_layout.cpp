@@ -20,7 +20,8 @@ ModelLayout::ModelLayout(const ModelConfig& config, Precision precision)
   Graph graph;
   const Opple model(graph, config, {.batch = 1, .training = true});
   add_weights(graph, model);
-  for (const std::string& network : model.groups()) add_optimiser(graph, network);
+  const Value rate = learning_rate(graph);
+  for (const std::string& network : model.groups()) add_optimiser(graph, network, rate);
   if (precision == Precision::kMixed) add_loss_scale(graph, model.groups());
 }
 
@@ -36,8 +37,8 @@ void ModelLayout::add_weights(Graph& graph, const Opple& model) {
   }
 }
 
-void ModelLayout::add_optimiser(Graph& graph, const std::string& network) {
-  adam(graph, network, {});
+void ModelLayout::add_optimiser(Graph& graph, const std::string& network, Value rate) {
+  adam(graph, network, {}, rate);
   const std::string state = "adam/" + network;
   groups_[state] = graph.group(state).spec().bytes();
   const auto offset = [&](const std::string& name) { return graph.info(graph.find(name).id()).offset; };

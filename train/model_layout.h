@@ -14,6 +14,7 @@
 namespace vkopple {
 
 class Graph;
+class Value;
 class Opple;
 
 /// A tensor that outlives a training step, and where it lies: bytes from `offset` on of a group of a
@@ -48,7 +49,7 @@ class ModelLayout {
  private:
   void add_weights(Graph& graph, const Opple& model);
   void add_loss_scale(Graph& graph, const std::vector<std::string>& networks);
-  void add_optimiser(Graph& graph, const std::string& network);
+  void add_optimiser(Graph& graph, const std::string& network, Value rate);
 
   int64_t slots_;
   int64_t frames_seen_;  ///< that pass depth network and mask decoder in a step of everything

@@ -73,16 +73,17 @@ class Parity {
                                       .keep_stages = keep_stages,
                                       .max_tensor_bytes = device_.caps().max_tensor_bytes()});
     const auto groups = built->model->groups();
+    const Value rate = learning_rate(built->graph);
     for (const auto& group : groups)
       if (update)
-        adam(built->graph, group,
-             {.learning_rate = kLearningRate, .epsilon = kEpsilon, .clip = group == "depth" ? 2.5F : 1.0F});
+        adam(built->graph, group, {.epsilon = kEpsilon, .clip = group == "depth" ? 2.5F : 1.0F}, rate);
     built->executor = std::make_unique<Executor>(
         device_, built->graph, ExecutorOptions{.loss = built->model->loss(), .trained = groups});
     for (const InitialTensor& t : built->model->tensors()) {
       const bool average = t.name.ends_with(".running_mean") || t.name.ends_with(".running_var");
       built->executor->write(t.value, weights((average ? "buffer/" : "param/") + t.name, t.value.shape()));
     }
+    built->executor->write(rate, std::vector<float>{kLearningRate});
     built->model->feed_constants(*built->executor);
     return built;
   }

@@ -141,7 +141,8 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   StepRecord record{.stage = s.name,
                     .batch = s.batch,
                     .data_seconds = seconds_since(start),
-                    .learning_rate = s.learning_rate};
+                    .learning_rate = s.learning_rate_at(step - stage.planned->begin)};
+  stage.training->set_learning_rate(record.learning_rate);
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
   store_.count_step(s.hypotheses == Hypotheses::kBackground);

@@ -55,7 +55,9 @@ int part_of(int batch, const Peers* peers) {
 TrainingStep::TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
                            std::shared_ptr<GroupStore> groups, bool profile, Peers* peers)
     : peers_(peers) {
-  model_ = std::make_unique<Opple>(graph_, config.model,
+  ModelConfig model = config.model;
+  model.reg = stage.reg.value_or(model.reg);
+  model_ = std::make_unique<Opple>(graph_, model,
                                    OppleOptions{.batch = part_of(stage.batch, peers),
                                                 .training = true,
                                                 .background_only = stage.hypotheses == Hypotheses::kBackground,
@@ -72,14 +74,14 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
     learning_.push_back(group);
   }
   if (config.training.precision == Precision::kMixed) loss_scale_ = loss_scale(graph_, learning_, kLossScale);
+  rate_ = learning_rate(graph_);
   for (size_t i = 0; i < networks.size(); ++i) {
     AdamOptions options{};
-    options.learning_rate = stage.learning_rate;
     options.beta1 = config.training.betas[0];
     options.beta2 = config.training.betas[1];
     options.epsilon = config.training.epsilon;
     options.clip = clip_of(config.training, networks[i]);
-    adam(graph_, learning_[i], options, loss_scale_);
+    adam(graph_, learning_[i], options, rate_, loss_scale_);
   }
   if (!config.training.sync_batch_norm)
     for (const auto& [group, members] : graph_.states())
@@ -100,6 +102,13 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
   if (loss_scale_ && executor_->read(loss_scale_)[LossScale::kScale] == 0)
     executor_->write(loss_scale_, std::vector<float>{kLossScale.initial, 0, 0, 0});
   model_->feed_constants(*executor_);
+  set_learning_rate(stage.learning_rate);
+}
+
+void TrainingStep::set_learning_rate(double rate) {
+  if (rate == set_rate_) return;
+  executor_->write(rate_, std::vector<float>{static_cast<float>(rate)});
+  set_rate_ = rate;
 }
 
 Losses TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step, Trace* trace) {

@@ -35,6 +35,9 @@ class TrainingStep {
   double exchange_seconds() const { return exchange_seconds_; }
   int64_t batch() const { return model_->options().batch; }
 
+  /// Of the runs that follow; the stage's until then.
+  void set_learning_rate(double rate);
+
   /// Forward, backward, update on one batch (of this process); `step` counts from 0 and numbers the dropout
   /// masks. Losses by name. A step that was made for profiling tells `trace` what it did.
   Losses run(const Triplets& triplets, uint32_t seed, uint32_t step, Trace* trace = nullptr);
@@ -55,6 +58,8 @@ class TrainingStep {
   std::unique_ptr<Opple> model_;
   std::vector<std::string> learning_;  ///< groups of the networks that learn
   std::vector<Value> averages_;        ///< running ones that processes have of their own batches
+  Value rate_;                         ///< of learning
+  double set_rate_ = -1;               ///< what it is
   Value loss_scale_;                   ///< the state of LossScale, in mixed precision
   std::optional<GradientExchange> exchange_;
   bool exchanges_late_ = false;  ///< gradients are exchanged after backward, not during it

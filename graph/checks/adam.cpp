@@ -18,7 +18,7 @@ HostTensors adam_reference(const HostTensors& x, const AdamOptions& o) {
   HostTensor m = x[2];
   HostTensor v = x[3];
   HostTensor c = x[4];
-  const double factor = x.size() > 5 ? x[5].at(LossScale::kFactor) : 1;
+  const double factor = x.size() > 6 ? x[6].at(LossScale::kFactor) : 1;
   if (factor == 0) return {p, m, v, c};
   c.at(0) = c.at(0) * o.beta1 + 1 - o.beta1;
   c.at(1) = c.at(1) * o.beta2 + 1 - o.beta2;
@@ -27,7 +27,7 @@ HostTensors adam_reference(const HostTensors& x, const AdamOptions& o) {
     m.values[i] = o.beta1 * m.values[i] + (1 - o.beta1) * g;
     v.values[i] = o.beta2 * v.values[i] + (1 - o.beta2) * g * g;
     p.values[i] -=
-        o.learning_rate / c.at(0) * m.values[i] / (std::sqrt(v.values[i]) / std::sqrt(c.at(1)) + o.epsilon);
+        x[5].at(0) / c.at(0) * m.values[i] / (std::sqrt(v.values[i]) / std::sqrt(c.at(1)) + o.epsilon);
   }
   return {p, m, v, c};
 }
@@ -37,9 +37,9 @@ CheckCase adam_case(int64_t size, int steps, const AdamOptions& o) {
   const TensorSpec flat = row_major({size});
   return {.label = fmt::format("{} elements after {} steps, clip {}", size, steps, o.clip),
           .op = std::make_shared<Adam>(o),
-          .inputs = {flat, flat, flat, flat, row_major({2})},
+          .inputs = {flat, flat, flat, flat, row_major({2}), row_major({1})},
           .reference = [=](const HostTensors& x) { return adam_reference(x, o); },
-          .ranges = {{-1, 1}, {-3, 3}, {-1, 1}, {0, 1}, {0, 1}},
+          .ranges = {{-1, 1}, {-3, 3}, {-1, 1}, {0, 1}, {0, 1}, {0.05, 0.2}},
           .prepare =
               [=](HostTensors& x) {
                 x[4].values = {1 - std::pow(o.beta1, steps), 1 - std::pow(o.beta2, steps)};
@@ -55,7 +55,7 @@ CheckCase scaled_adam_case(int64_t size, const AdamOptions& o, double factor) {
   check.inputs.push_back(row_major({LossScale::kElements}));
   check.prepare = [factor, plain = check.prepare](HostTensors& x) {
     plain(x);
-    x[5].at(LossScale::kFactor) = factor;
+    x[6].at(LossScale::kFactor) = factor;
     if (factor == 0) x[1].values[0] = std::numeric_limits<double>::infinity();
     if (factor == 0) x[1].values[1] = std::numeric_limits<double>::quiet_NaN();
   };
@@ -65,12 +65,12 @@ CheckCase scaled_adam_case(int64_t size, const AdamOptions& o, double factor) {
 }  // namespace
 
 void check_adam(CheckList& list) {
-  list.push_back(adam_case(4, 0, {.learning_rate = 0.1}));
-  list.push_back(adam_case(64, 0, {.learning_rate = 0.1, .clip = 1}));
-  list.push_back(adam_case(1036, 3, {.learning_rate = 0.1, .clip = 2.5}));
-  list.push_back(adam_case(260, 1000, {.learning_rate = 0.1, .beta1 = 0.5, .beta2 = 0.9, .epsilon = 0.1}));
-  list.push_back(scaled_adam_case(1036, {.learning_rate = 0.1, .clip = 0.5}, 0.25));
-  list.push_back(scaled_adam_case(1036, {.learning_rate = 0.1}, 0));
+  list.push_back(adam_case(4, 0, {}));
+  list.push_back(adam_case(64, 0, {.clip = 1}));
+  list.push_back(adam_case(1036, 3, {.clip = 2.5}));
+  list.push_back(adam_case(260, 1000, {.beta1 = 0.5, .beta2 = 0.9, .epsilon = 0.1}));
+  list.push_back(scaled_adam_case(1036, {.clip = 0.5}, 0.25));
+  list.push_back(scaled_adam_case(1036, {}, 0));
 }
 
 }  // namespace vkopple

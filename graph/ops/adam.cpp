@@ -8,7 +8,7 @@
 namespace vkopple {
 namespace {
 
-enum Input : size_t { kParameters, kGradient, kM, kV, kCorrection, kScale };
+enum Input : size_t { kParameters, kGradient, kM, kV, kCorrection, kRate, kScale };
 
 struct CorrectionPush {
   float beta1;
@@ -19,7 +19,6 @@ struct CorrectionPush {
 
 struct AdamPush {
   uint32_t vectors;
-  float learning_rate;
   float beta1;
   float beta2;
   float rest1;
@@ -33,8 +32,6 @@ bool is_decay(double beta) { return beta >= 0 && beta < 1; }
 }  // namespace
 
 Adam::Adam(const AdamOptions& options) : options_(options) {
-  require(options.learning_rate >= 0,
-          fmt::format("the learning rate must not be negative: {}", options.learning_rate));
   require(is_decay(options.beta1) && is_decay(options.beta2),
           fmt::format("the betas must be in [0, 1), not {} and {}", options.beta1, options.beta2));
   require(options.epsilon > 0, fmt::format("epsilon must be positive, not {}", options.epsilon));
@@ -42,9 +39,10 @@ Adam::Adam(const AdamOptions& options) : options_(options) {
 }
 
 std::vector<TensorSpec> Adam::infer(std::span<const TensorSpec> x) const {
-  require(x.size() == 5 || x.size() == 6,
-          "takes parameters, gradient, m, v, the corrections, and perhaps the state of a loss scale");
-  require(x.size() == 5 || x[kScale] == row_major({LossScale::kElements}),
+  require(x.size() == 6 || x.size() == 7,
+          "takes parameters, gradient, m, v, the corrections, the learning rate, and perhaps the state of a "
+          "loss scale");
+  require(x.size() == 6 || x[kScale] == row_major({LossScale::kElements}),
           "the state of the loss scale must be four numbers");
   const TensorSpec& flat = x[kParameters];
   require(flat == row_major({flat.shape.elements()}) && flat.shape.elements() % 4 == 0,
@@ -53,6 +51,7 @@ std::vector<TensorSpec> Adam::infer(std::span<const TensorSpec> x) const {
     require(x[i] == flat, fmt::format("input {} must be as large as the parameters {}, not {}", i,
                                       flat.shape.text(), x[i].shape.text()));
   require(x[kCorrection] == row_major({2}), "the corrections must be two numbers");
+  require(x[kRate] == row_major({1}), "the learning rate must be one number");
   return {};
 }
 
@@ -66,7 +65,6 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
   const uint32_t scaled = scale ? 1 : 0;
   recorder.dispatch_flat("adam.correction", 1, {io.x[kCorrection].slice, scale}, correction, {scaled});
   const AdamPush push{.vectors = words(io.x[kParameters]) / 4,
-                      .learning_rate = f32(options_.learning_rate),
                       .beta1 = correction.beta1,
                       .beta2 = correction.beta2,
                       .rest1 = correction.rest1,
@@ -77,24 +75,26 @@ void Adam::record_forward(Recorder& recorder, const Forward& io) const {
   const Slice m = io.x[kM].slice;
   const Slice v = io.x[kV].slice;
   // Where a factor may say that nothing is to change, nothing is stored by rows.
-  recorder.dispatch_units(
-      "adam.apply", push.vectors, {.allowed = scaled == 0, .tensors = 3},
-      {io.x[kGradient].slice, io.x[kCorrection].slice, parameters, m, v, scale, parameters, m, v}, push,
-      {scaled});
+  recorder.dispatch_units("adam.apply", push.vectors, {.allowed = scaled == 0, .tensors = 3},
+                          {io.x[kGradient].slice, io.x[kCorrection].slice, parameters, m, v, scale, parameters,
+                           m, v, io.x[kRate].slice},
+                          push, {scaled});
 }
 
 void Adam::record_backward(Recorder&, const Backward&) const {}
 
-void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value scale) {
+void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value rate, Value scale) {
   const Value parameters = graph.group(group);
   const Value gradient = graph.gradient(group);
   const std::string state = "adam/" + group;
   const Value m = graph.state(state, state + "/m", parameters.spec());
   const Value v = graph.state(state, state + "/v", parameters.spec());
   const Value correction = graph.state(state, state + "/correction", row_major({2}));
-  std::vector<Value> inputs{parameters, gradient, m, v, correction};
+  std::vector<Value> inputs{parameters, gradient, m, v, correction, rate};
   if (scale) inputs.push_back(scale);
   graph.update(std::make_shared<Adam>(options), inputs);
 }
+
+Value learning_rate(Graph& graph) { return graph.input("learning_rate", row_major({1})); }
 
 }  // namespace vkopple

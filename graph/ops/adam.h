@@ -8,7 +8,6 @@
 namespace vkopple {
 
 struct AdamOptions {
-  double learning_rate = 3e-4;
   double beta1 = 0.9;
   double beta2 = 0.999;
   double epsilon = 1e-6;
@@ -20,9 +19,9 @@ struct AdamOptions {
 ///   p ← p − learning_rate / c₁ · m / (√v / √c₂ + epsilon)
 /// c₁ = 1 − β₁ᵗ and c₂ = 1 − β₂ᵗ grow by c ← c β + (1 − β), which keeps digits that a power in float32 would
 /// lose. A NaN in the gradient is not clipped: it shows in the parameters.
-/// Inputs: p, gradient, m, v (N, a multiple of 4), c (2); all but the gradient are updated. No outputs.
-/// With a sixth input, the state of LossScale, the gradient is multiplied by its factor first, and where that
-/// is 0 nothing changes.
+/// Inputs: p, gradient, m, v (N, a multiple of 4), c (2), learning rate (1); all but gradient and learning rate
+/// are updated. No outputs. With a seventh input, the state of LossScale, the gradient is multiplied by its
+/// factor first, and where that is 0 nothing changes.
 class Adam : public Op {
  public:
   explicit Adam(const AdamOptions& options);
@@ -30,7 +29,7 @@ class Adam : public Op {
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   bool differentiable(size_t) const override { return false; }
-  bool mutates(size_t input) const override { return input != 1 && input != 5; }
+  bool mutates(size_t input) const override { return input != 1 && input < 5; }
   void record_forward(Recorder& recorder, const Forward& io) const override;
   void record_backward(Recorder& recorder, const Backward& io) const override;
 
@@ -40,7 +39,10 @@ class Adam : public Op {
 
 /// Adds the update of a parameter group by its gradient, after all of the group's parameters are declared. Its
 /// state is the group "adam/<group>": adam/<group>/m, …/v, and …/correction, which holds c₁ and c₂.
-/// scale: what loss_scale() returned, or none.
-void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value scale = {});
+/// rate: of learning, (1), an input as learning_rate() makes it. scale: what loss_scale() returned, or none.
+void adam(Graph& graph, const std::string& group, const AdamOptions& options, Value rate, Value scale = {});
+
+/// The input "learning_rate", (1), which all updates of a graph may share.
+Value learning_rate(Graph& graph);
 
 }  // namespace vkopple

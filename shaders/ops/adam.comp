@@ -31,7 +31,6 @@ void main() {
 #else
 layout(push_constant) uniform Push {
   uint vectors;
-  float learning_rate;
   float beta1;
   float beta2;
   float rest1;
@@ -49,6 +48,7 @@ READ1(5, loss_scale)
 READ4(6, old_parameters)  // and so on: the same tensors, for rows
 READ4(7, old_m)
 READ4(8, old_v)
+READ1(9, learning_rate)
 
 struct Moments {
   vec4 mean;
@@ -67,7 +67,7 @@ vec4 change(Moments now, float rate, float root) { return -rate * now.mean / (sq
 void main() {
   float factor = kScaled != 0 ? load1(loss_scale, 3) : 1.0;
   if (kScaled != 0 && factor == 0.0) return;
-  float rate = p.learning_rate / load1(c, 0);
+  float rate = load1(learning_rate, 0) / load1(c, 0);
   float root = sqrt(load1(c, 1));
 #ifdef UNIT_ROWS
   if (kUnitRows) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <string>
 
 #include "models/presets.h"
@@ -300,6 +302,26 @@ TEST(Config, OverridesThatAreNoneAreWrongUse) {
   EXPECT_NE(wrong_use("training.stages[2].steps=1").find("its list has 2"), std::string::npos);
   EXPECT_NE(wrong_use("model.height[0]=1").find("its list has 0"), std::string::npos);
   EXPECT_NE(wrong_use("model.height.x=1").find("asks for a part of model.height"), std::string::npos);
+}
+
+TEST(Config, StagesHaveSchedulesAndWeightsOfTheirOwn) {
+  const Config c = Config::parse(R"({"training": {"stages": [
+    {"name": "a", "steps": 100, "learning_rate": 0.5, "warmup": 10, "final_learning_rate": 0.1, "reg": 0.25},
+    {"name": "b", "learning_rate": 0.25}]}})",
+                                 "x");
+  const TrainingStage a = c.stages()[0];
+  EXPECT_EQ(a.reg, 0.25);
+  EXPECT_NEAR(a.learning_rate_at(0), 0.05, 1e-12);
+  EXPECT_NEAR(a.learning_rate_at(4), 0.5 * (0.1 + 0.4 * (1 + std::cos(std::numbers::pi * 0.04)) / 2), 1e-12);
+  EXPECT_NEAR(a.learning_rate_at(50), 0.3, 1e-12);
+  EXPECT_NEAR(a.learning_rate_at(100), 0.1, 1e-12);
+  EXPECT_NEAR(a.learning_rate_at(1000), 0.1, 1e-12);
+  const TrainingStage b = c.stages()[1];
+  EXPECT_FALSE(b.reg || b.final_learning_rate);
+  EXPECT_EQ(b.learning_rate_at(12345), 0.25);
+  EXPECT_EQ(Config::parse(c.to_json(), "y"), c);
+  EXPECT_NE(refusal(R"({"training": {"stages": [{"name": "a", "final_learning_rate": 0.1}]}})").find("steps"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -172,7 +172,8 @@ std::string DataSummary::to_text() const {
   row("camera pitch", pitch_.to_text(" degrees"));
   row("camera roll", roll_.to_text(" degrees"));
   row("depth", depth_.to_text());
-  row("depth unknown", fmt::format("{:.3g} of the pixels", share(unknown_depth_, depth_pixels_)));
+  if (depth_pixels_ > 0)
+    row("depth unknown", fmt::format("{:.3g} of the pixels", share(unknown_depth_, depth_pixels_)));
   row("pixels of objects", object_share_.to_text());
   row("objects", objects_.to_text());
   return text;

@@ -120,8 +120,6 @@ Json EvaluationScores::to_json() const {
   return json;
 }
 
-std::string EvaluationScores::to_table() const { return score_table({{"", this}}); }
-
 std::string score_table(const std::vector<ScoreColumn>& columns) {
   using Score = std::optional<double> (EvaluationScores::*)() const;
   constexpr std::array<std::pair<const char*, Score>, 10> kRows{

@@ -61,9 +61,6 @@ class EvaluationScores {
   Json scores_json() const;
   Json counts_json() const;
 
-  /// A table of names and values to three places, one a line; "-" where undefined.
-  std::string to_table() const;
-
   /// What is left out of which scores, a line each.
   std::vector<std::string> left_out() const;
 
@@ -92,8 +89,8 @@ struct ScoreColumn {
   const EvaluationScores* scores;
 };
 
-/// EvaluationScores::to_table with a column for each, of the same images: how many there were stands in the
-/// first alone.
+/// A table of names and values to three places, one a line; "-" where undefined. A column for each, of the same
+/// images: how many there were stands in the first alone. Throws std::out_of_range without any column.
 std::string score_table(const std::vector<ScoreColumn>& columns);
 
 }  // namespace vkopple

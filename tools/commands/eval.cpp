@@ -137,12 +137,11 @@ void add_eval(CLI::App& app) {
   CLI::Option* model = command->add_option(
       "model", o->model, "A checkpoint, or the folder of a run; may be left out with --baselines");
   command
-      ->add_option("--data", o->data,
-                   "rooms:SEED draws rooms with the options that the model carries, or --config; or a shard, a "
-                   "folder of "
-                   "shards, or a data set of another format that vkopple convert knows, of which the middle "
-                   "frame of every "
-                   "scene is scored")
+      ->add_option(
+          "--data", o->data,
+          "rooms:SEED draws rooms with the options of the model or of --config; or a shard, a folder of "
+          "shards, or a data set of another format that vkopple convert knows, of which the middle "
+          "frame of every scene is scored")
       ->required();
   command->add_option("--images", o->images, "How many, if there are as many")
       ->capture_default_str()
@@ -158,8 +157,7 @@ void add_eval(CLI::App& app) {
       ->needs(grid);
   command->add_option("--stage", o->stage,
                       "With rooms:SEED: the rooms of that stage of training (default: of the last one trained; "
-                      "without a model, "
-                      "the configuration's own)");
+                      "without a model, the configuration's own)");
   command->add_flag(
       "--baselines", o->baselines,
       "Score what needs no learning on the same images: all background, one object, random masks, "

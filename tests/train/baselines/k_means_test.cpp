@@ -38,8 +38,8 @@ TEST(KMeans, OneColourIsCutByPlace) {
 }
 
 TEST(KMeans, CentresMoveToTheMiddleOfTheirPixels) {
-  // Centres start at 0.4 (nearest to the mean, 0.383) and 1. Their middle is 0.7, then that of 0.26 and 0.975:
-  // 0.62 changes sides only once centres have moved.
+  // Centres start at the pixels of 0.4, nearest to the mean, and of 1: 0.62 is nearer to the first. As means of
+  // their pixels they are at 0.2 and 0.98, of which 0.62 is nearer to the second.
   std::vector<float> image;
   for (int c = 0; c < 3; ++c) image.insert(image.end(), {0.0F, 0.0F, 0.0F, 0.4F, 0.62F, 1.0F, 0.95F});
   const Labels labels = k_means_labels(image, 1, 7, 2);

@@ -4,33 +4,11 @@
 #include <limits>
 
 #include "runtime/error.h"
+#include "train/image_truth.h"
 #include "train/pictures.h"
 
 namespace vkopple {
 namespace {
-
-template <class T>
-std::span<const T> part(const std::vector<T>& values, size_t index, size_t count) {
-  if (values.empty()) return {};
-  return std::span(values).subspan(index * (values.size() / count), values.size() / count);
-}
-
-/// Empty where unknown.
-std::vector<int32_t> true_labels(const TripletBatch& batch, size_t index) {
-  const auto truth = part(batch.label, index, static_cast<size_t>(batch.batch));
-  if (truth.empty() || truth[0] == kUnknownLabel) return {};
-  return {truth.begin(), truth.end()};
-}
-
-std::vector<LabelledLocation> true_locations(const TripletBatch& batch, size_t index) {
-  std::vector<LabelledLocation> all;
-  if (batch.objects.empty()) return all;
-  const auto& objects = batch.objects[index];
-  for (size_t i = 0; i < objects.size(); ++i)
-    if (objects[i].pixels > 0)
-      all.push_back({static_cast<int32_t>(i + 1), objects[i].location[0], objects[i].location[1]});
-  return all;
-}
 
 std::vector<LabelledLocation> inferred_locations(std::span<const float> location) {
   std::vector<LabelledLocation> all;
@@ -51,25 +29,29 @@ Plane<float> plane(std::span<const float> values, int height, int width) {
 
 class Evaluation {
  public:
-  Evaluation(Perception& model, std::vector<std::vector<RgbImage>>* grid, size_t grid_rows)
-      : model_(model), grid_(grid), grid_rows_(grid_rows) {}
+  Evaluation(Perception& model, const EvaluateOptions& options) : model_(model), options_(options) {}
 
   void add(const TripletBatch& batch, size_t index) {
     const auto count = static_cast<size_t>(batch.batch);
     const auto entities = model_.config().slots + 1;
-    const bool has_masks = !percepts_.masks.empty();
-    const std::vector<int32_t> labels = has_masks ? true_labels(batch, index) : std::vector<int32_t>{};
-    const bool has_depth = !batch.depth.empty();
-    const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
-    const auto true_objects = has_masks ? true_locations(batch, index) : std::vector<LabelledLocation>{};
-    const auto objects = inferred_locations(part(percepts_.location, index, count));
-    scores_.add({.true_labels = labels,
-                 .predicted_labels = inferred,
-                 .true_depth = part(batch.depth, index, count),
-                 .predicted_depth = has_depth ? part(percepts_.depth, index, count) : std::span<const float>{},
-                 .true_objects = true_objects,
-                 .predicted_objects = objects});
-    if (grid_ != nullptr && grid_->size() < grid_rows_) add_row(batch, index, inferred, labels);
+    ImageTruth truth = image_truth(batch, index);
+    if (options_.baselines != nullptr) options_.baselines->add(truth);
+    if (percepts_.masks.empty()) {  // of a model of depth alone nothing else is scored
+      truth.labels.clear();
+      truth.objects.clear();
+    }
+    const auto inferred = mask_indices(equal_part(percepts_.masks, index, count), entities);
+    const auto objects = inferred_locations(equal_part(percepts_.location, index, count));
+    const bool has_depth = !truth.depth.empty();
+    scores_.add(
+        {.true_labels = truth.labels,
+         .predicted_labels = inferred,
+         .true_depth = truth.depth,
+         .predicted_depth = has_depth ? equal_part(percepts_.depth, index, count) : std::span<const float>{},
+         .true_objects = truth.objects,
+         .predicted_objects = objects});
+    if (options_.grid != nullptr && options_.grid->size() < options_.grid_rows)
+      add_row(batch, index, inferred, truth.labels);
   }
 
   void see(const TripletBatch& batch) { percepts_ = model_.see(batch.images[1]); }
@@ -80,7 +62,7 @@ class Evaluation {
                std::vector<int32_t> labels) {
     const auto count = static_cast<size_t>(batch.batch);
     RgbImage image(batch.height, batch.width);
-    const auto pixels = part(batch.images[1], index, count);
+    const auto pixels = equal_part(batch.images[1], index, count);
     std::copy(pixels.begin(), pixels.end(), image.pixels.begin());
     for (int32_t& label : labels) --label;  // objects count from 0 in colours, as slots do
     // What is unknown looks like background, and so does what a model of depth alone infers.
@@ -90,19 +72,34 @@ class Evaluation {
     inferred.resize(pixels.size() / 3, background);
     const int zoom = zoom_for(batch.height);
     const auto depth = [&](const std::vector<float>& values) {
-      return enlarge(depth_picture(plane(part(values, index, count), batch.height, batch.width), farthest),
-                     zoom);
+      return enlarge(
+          depth_picture(plane(equal_part(values, index, count), batch.height, batch.width), farthest), zoom);
     };
-    grid_->push_back({enlarge(image, zoom), overlay(image, inferred, background, zoom),
-                      overlay(image, labels, -1, zoom), depth(percepts_.depth), depth(batch.depth)});
+    options_.grid->push_back({enlarge(image, zoom), overlay(image, inferred, background, zoom),
+                              overlay(image, labels, -1, zoom), depth(percepts_.depth), depth(batch.depth)});
   }
 
   Perception& model_;
-  std::vector<std::vector<RgbImage>>* grid_;
-  size_t grid_rows_;
+  const EvaluateOptions& options_;
   Percepts percepts_;
   EvaluationScores scores_;
 };
+
+template <class SeeBatch, class AddImage>
+void for_each_image(TripletSource& source, int64_t images, const std::function<void(int64_t)>& progress,
+                    const SeeBatch& see_batch, const AddImage& add_image) {
+  int64_t done = 0;
+  for (uint64_t step = 0; done < images; ++step) {
+    const TripletBatch batch = source.read(step);
+    if (step == 0 && batch.label.empty() && batch.depth.empty())
+      throw Error(
+          "the data has neither true labels nor true depth to compare with; use rooms:SEED or shards of "
+          "vkopple generate");
+    see_batch(batch);
+    for (size_t i = 0; i < static_cast<size_t>(batch.batch) && done < images; ++i, ++done) add_image(batch, i);
+    if (progress) progress(done);
+  }
+}
 
 }  // namespace
 
@@ -118,23 +115,23 @@ std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities
 }
 
 EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
-                          std::vector<std::vector<RgbImage>>* grid, size_t grid_rows,
-                          const std::function<void(int64_t)>& progress) {
-  Evaluation evaluation(model, grid, grid_rows);
-  for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
-    const TripletBatch batch = source.read(step);
-    if (step == 0 && batch.label.empty() && batch.depth.empty())
-      throw Error(
-          "the data has neither true labels nor true depth to compare with; use rooms:SEED or shards of "
-          "vkopple "
-          "generate");
-    if (batch.batch != model.batch()) throw Error("the data's batches don't fit the model's");
-    evaluation.see(batch);
-    for (size_t i = 0; i < static_cast<size_t>(batch.batch) && evaluation.scores().images() < images; ++i)
-      evaluation.add(batch, i);
-    if (progress) progress(evaluation.scores().images());
-  }
+                          const EvaluateOptions& options) {
+  Evaluation evaluation(model, options);
+  for_each_image(
+      source, images, options.progress,
+      [&](const TripletBatch& batch) {
+        if (batch.batch != model.batch()) throw Error("the data's batches don't fit the model's");
+        evaluation.see(batch);
+      },
+      [&](const TripletBatch& batch, size_t index) { evaluation.add(batch, index); });
   return evaluation.scores();
+}
+
+void evaluate_baselines(Baselines& baselines, TripletSource& source, int64_t images,
+                        const std::function<void(int64_t)>& progress) {
+  for_each_image(
+      source, images, progress, [](const TripletBatch&) {},
+      [&](const TripletBatch& batch, size_t index) { baselines.add(image_truth(batch, index)); });
 }
 
 }  // namespace vkopple

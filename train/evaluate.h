@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "models/perception.h"
+#include "train/baselines/baselines.h"
 #include "train/data/triplets.h"
 #include "train/evaluation_scores.h"
 #include "train/image.h"
@@ -15,12 +16,23 @@ namespace vkopple {
 /// Index of the largest of the K+1 masks at each pixel (K is the background). masks: (K+1, H, W) of one image.
 std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities);
 
+struct EvaluateOptions {
+  /// Receives, for the first `grid_rows` images, picture, inferred objects, true objects, inferred depth, true
+  /// depth.
+  std::vector<std::vector<RgbImage>>* grid = nullptr;
+  size_t grid_rows = 6;
+  Baselines* baselines = nullptr;              ///< to score on the same images
+  std::function<void(int64_t)> progress = {};  ///< is told how many images are done
+};
+
 /// Scores (docs/model.md §10) on the middle frames of a source's triplets, `images` of them from step 0 on.
-/// What is unknown of an image is left out of its scores. Where `grid` is given it receives, for the first
-/// `grid_rows` images, picture, inferred objects, true objects, inferred depth, true depth. `progress` (may be
-/// empty) is told how many images are done. Throws Error where the first batch has neither labels nor depth.
+/// What is unknown of an image is left out of its scores. Throws Error where the first batch has neither labels
+/// nor depth.
 EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
-                          std::vector<std::vector<RgbImage>>* grid = nullptr, size_t grid_rows = 6,
-                          const std::function<void(int64_t)>& progress = {});
+                          const EvaluateOptions& options = {});
+
+/// The baselines alone.
+void evaluate_baselines(Baselines& baselines, TripletSource& source, int64_t images,
+                        const std::function<void(int64_t)>& progress = {});
 
 }  // namespace vkopple

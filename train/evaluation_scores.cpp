@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "runtime/error.h"
 
@@ -92,7 +93,7 @@ void EvaluationScores::add_locations(const EvaluatedImage& image, std::span<cons
   }
 }
 
-Json EvaluationScores::to_json() const {
+Json EvaluationScores::scores_json() const {
   const auto value = [](const std::optional<double>& score) { return score ? Json(*score) : Json(nullptr); };
   return {{"ari_fg", value(ari_fg())},
           {"ari_fg_multi", value(ari_fg_multi())},
@@ -103,33 +104,57 @@ Json EvaluationScores::to_json() const {
           {"angle_r", value(angle_r())},
           {"distance_r", value(distance_r())},
           {"angle_r_good", value(angle_r_good())},
-          {"distance_r_good", value(distance_r_good())},
-          {"images", images_},
+          {"distance_r_good", value(distance_r_good())}};
+}
+
+Json EvaluationScores::counts_json() const {
+  return {{"images", images_},
           {"skipped", skipped_},
           {"without_masks", without_masks_},
           {"without_depth", without_depth_}};
 }
 
-std::string EvaluationScores::to_table() const {
-  struct Row {
-    const char* name;
-    std::optional<double> value;
-  };
-  const std::array<Row, 10> rows{{{"ARI-fg", ari_fg()},
-                                  {"ARI-fg, two objects or more", ari_fg_multi()},
-                                  {"IoU", iou()},
-                                  {"IoU of objects", iou_objects()},
-                                  {"depth r, mean over images", depth_r()},
-                                  {"depth r, all pixels", depth_r_pooled()},
-                                  {"angle r", angle_r()},
-                                  {"distance r", distance_r()},
-                                  {"angle r, IoU > 0.5", angle_r_good()},
-                                  {"distance r, IoU > 0.5", distance_r_good()}}};
+Json EvaluationScores::to_json() const {
+  Json json = scores_json();
+  json.update(counts_json());
+  return json;
+}
+
+std::string score_table(const std::vector<ScoreColumn>& columns) {
+  using Score = std::optional<double> (EvaluationScores::*)() const;
+  constexpr std::array<std::pair<const char*, Score>, 10> kRows{
+      {{"ARI-fg", &EvaluationScores::ari_fg},
+       {"ARI-fg, two objects or more", &EvaluationScores::ari_fg_multi},
+       {"IoU", &EvaluationScores::iou},
+       {"IoU of objects", &EvaluationScores::iou_objects},
+       {"depth r, mean over images", &EvaluationScores::depth_r},
+       {"depth r, all pixels", &EvaluationScores::depth_r_pooled},
+       {"angle r", &EvaluationScores::angle_r},
+       {"distance r", &EvaluationScores::distance_r},
+       {"angle r, IoU > 0.5", &EvaluationScores::angle_r_good},
+       {"distance r, IoU > 0.5", &EvaluationScores::distance_r_good}}};
   std::string text;
-  for (const Row& row : rows) {
-    text += fmt::format("{:<28}{:>8}\n", row.name, row.value ? fmt::format("{:.3f}", *row.value) : "-");
-  }
-  return text + fmt::format("{:<28}{:>8}\n{:<28}{:>8}\n", "images", images_, "  without foreground", skipped_);
+  const auto add_row = [&](const char* name, const auto& cell) {
+    text += fmt::format("{:<28}", name);
+    for (const ScoreColumn& column : columns)
+      text += fmt::format("{:>{}}", cell(column), std::max<std::size_t>(8, column.title.size() + 2));
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  };
+  if (columns.size() > 1) add_row("", [](const ScoreColumn& column) { return column.title; });
+  for (const auto& [name, score] : kRows)
+    add_row(name, [&, of = score](const ScoreColumn& column) {
+      const std::optional<double> value = (column.scores->*of)();
+      return value ? fmt::format("{:.3f}", *value) : std::string("-");
+    });
+  const auto add_count = [&](const char* name, std::int64_t count) {
+    add_row(name, [&](const ScoreColumn& column) {
+      return &column == columns.data() ? std::to_string(count) : std::string();
+    });
+  };
+  add_count("images", columns.at(0).scores->images());
+  add_count("  without foreground", columns.at(0).scores->skipped());
+  return text;
 }
 
 std::vector<std::string> EvaluationScores::left_out() const {

@@ -57,9 +57,9 @@ class EvaluationScores {
 
   /// Keys named like the functions above; null where a score is undefined.
   Json to_json() const;
-
-  /// A table of names and values to three places, one a line; "-" where undefined.
-  std::string to_table() const;
+  /// The two halves of it.
+  Json scores_json() const;
+  Json counts_json() const;
 
   /// What is left out of which scores, a line each.
   std::vector<std::string> left_out() const;
@@ -82,5 +82,15 @@ class EvaluationScores {
   Mean ari_fg_, ari_fg_multi_, iou_, iou_objects_, depth_r_;
   Correlation depth_pooled_, angle_, distance_, angle_good_, distance_good_;
 };
+
+/// Scores beside others.
+struct ScoreColumn {
+  std::string title;  ///< of its column; may be empty where it is the only one
+  const EvaluationScores* scores;
+};
+
+/// A table of names and values to three places, one a line; "-" where undefined. A column for each, of the same
+/// images: how many there were stands in the first alone. Throws std::out_of_range without any column.
+std::string score_table(const std::vector<ScoreColumn>& columns);
 
 }  // namespace vkopple

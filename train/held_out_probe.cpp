@@ -10,7 +10,8 @@ HeldOutProbe::HeldOutProbe(const ModelStore& store, const ModelConfig& config, c
       rooms_(store.device(), Lens(config), rooms, options.batch, options.seed) {}
 
 HeldOutScores HeldOutProbe::measure(std::vector<std::vector<RgbImage>>* pictures) {
-  const EvaluationScores scores = evaluate(perception_, rooms_, kImages, pictures, kShown);
+  const EvaluationScores scores =
+      evaluate(perception_, rooms_, kImages, {.grid = pictures, .grid_rows = kShown});
   return {.ari_fg = scores.ari_fg(), .iou = scores.iou(), .depth_r = scores.depth_r()};
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -34,13 +33,6 @@ constexpr uint64_t kProbeSeedDistance = 1'000'003;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Of "rooms:SEED"; 0 for other data, which is measured in rooms all the same.
-uint64_t rooms_seed(std::string_view data) {
-  uint64_t seed = 0;
-  if (data.starts_with("rooms:")) std::from_chars(data.data() + 6, data.data() + data.size(), seed);
-  return seed;
 }
 
 /// 32 bits made of all 64: what dropout's random numbers take.
@@ -122,7 +114,8 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
     stage.probe = std::make_unique<HeldOutProbe>(
         store_, config_.model, s.rooms,
         HeldOutProbe::Options{.batch = std::min(s.batch, kProbeBatch),
-                              .seed = rooms_seed(options_.data) + kProbeSeedDistance,
+                              // Whatever the data, it is measured in rooms.
+                              .seed = rooms_seed(options_.data).value_or(0) + kProbeSeedDistance,
                               .objects = s.hypotheses != Hypotheses::kBackground});
   return stage;
 }

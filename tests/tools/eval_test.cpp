@@ -61,6 +61,48 @@ TEST_F(EvalCommand, TheBatchChangesNoScore) {
   EXPECT_EQ(b.at("images"), 3);
 }
 
+TEST_F(EvalCommand, BaselinesStandBesideTheModel) {
+  const auto plain = eval("rooms:2", {"--images", "3", "--json"});
+  const auto outcome = eval("rooms:2", {"--images", "3", "--json", "--baselines"});
+  expect_success(outcome);
+  json scores = json::parse(outcome.output);
+  const json baselines = scores.at("baselines");
+  for (const char* name : {"background", "one_object", "random", "k_means", "truth"})
+    EXPECT_TRUE(baselines.contains(name)) << name;
+  EXPECT_GE(baselines.at("truth").at("iou"), scores.at("iou"));
+  EXPECT_NEAR(baselines.at("truth").at("depth_r").get<double>(), 1, 1e-9);
+  EXPECT_TRUE(baselines.at("k_means").at("depth_r").is_null());
+  scores.erase("baselines");
+  EXPECT_EQ(scores, json::parse(plain.output));
+  const auto table = eval("rooms:2", {"--images", "3", "--baselines"});
+  EXPECT_NE(table.output.find(" model  background  one object"), std::string::npos) << table.output;
+}
+
+TEST_F(EvalCommand, BaselinesNeedNoModel) {
+  const std::vector<std::string> words{"eval", "--baselines", "--data", "rooms:9001", "--images",
+                                       "2",    "--config",    "tiny",   "--set",      "rooms.supersample=1"};
+  const auto more = [&](const std::vector<std::string>& others) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), others.begin(), others.end());
+    return run_vkopple(all);
+  };
+  const auto outcome = more({"--json"});
+  expect_success(outcome);
+  EXPECT_TRUE(outcome.errors.empty()) << outcome.errors;
+  const json scores = json::parse(outcome.output);
+  EXPECT_EQ(scores.at("images"), 2);
+  EXPECT_EQ(scores.at("baselines").at("truth").at("iou"), 1.0);
+  EXPECT_FALSE(scores.contains("iou"));
+  EXPECT_NE(scores, json::parse(more({"--json", "--set", "rooms.objects=1"}).output));
+  const auto ended = run_vkopple({"eval", "--baselines", "--data", generated(3), "--config", "tiny", "--set",
+                                  "model.height=16", "--set", "model.width=16"});
+  expect_success(ended);
+  EXPECT_NE(ended.errors.find("3 of 200 images"), std::string::npos) << ended.errors;
+  EXPECT_NE(ended.output.find("background  one object"), std::string::npos) << ended.output;
+  expect_failure(more({"--grid", folder_ / "grid.png"}), 2, {"--grid", "model"});
+  expect_failure(more({"--stage", "nap"}), 2, {"nap"});
+}
+
 TEST_F(EvalCommand, EndsWithTheData) {
   const auto outcome = eval(generated(3), {"--images", "10", "--json"});
   expect_success(outcome);
@@ -102,6 +144,9 @@ TEST_F(EvalCommand, RefusesWrongUse) {
   expect_failure(eval("rooms:1", {"--images", "0"}), 2, {"--images"});
   expect_failure(eval("rooms:1", {"--rows", "2"}), 2, {"--grid"});
   expect_failure(run_vkopple({"eval", model()}), 2, {"--data"});
+  expect_failure(run_vkopple({"eval", "--data", "rooms:1"}), 2, {"model", "--baselines"});
+  expect_failure(eval("rooms:1", {"--baselines", "--config", "tiny"}), 2, {"--config", "model"});
+  expect_failure(eval("rooms:1", {"--set", "model.fov=1"}), 2, {"--set", "model"});
 }
 
 TEST_F(EvalCommand, NamesWhatCannotBeRead) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "train/data/batch_part.h"
@@ -21,6 +22,10 @@ struct SourceOptions {
   uint64_t scenes = UINT64_MAX;  ///< how many evaluation needs at most
   BatchPart part = {};           ///< of whole batches, where `batch` triplets are one of several processes'
 };
+
+/// The seed in "rooms:SEED", nothing where `data` names something else. Throws UsageError for a seed that is no
+/// number.
+std::optional<uint64_t> rooms_seed(const std::string& data);
 
 /// What `--data` names: "rooms:SEED" draws new rooms at every step, anything else is a shard or a folder of
 /// them, or a data set of another known format, which is taken into memory. Throws UsageError for a seed of

@@ -41,8 +41,8 @@ RoomSource::RoomSource(const Device& device, const Lens& lens, const RoomsConfig
       seed_(seed),
       choices_(strided_triplets(rooms.frames)) {}
 
-std::vector<RoomSource::Shown> RoomSource::choose(uint64_t step) const {
-  std::vector<Shown> shown;
+std::vector<RoomTriplet> RoomSource::scenes(uint64_t step) const {
+  std::vector<RoomTriplet> shown;
   for (uint64_t b = 0; b < static_cast<uint64_t>(batch_); ++b) {
     const uint64_t index = step * static_cast<uint64_t>(batch_) + b;
     Random random(seed_, kChoiceStreams + index);
@@ -52,7 +52,8 @@ std::vector<RoomSource::Shown> RoomSource::choose(uint64_t step) const {
   return shown;
 }
 
-TripletBatch RoomSource::draw(const std::vector<Shown>& shown, int first_frame, RoomRenderer& renderer) const {
+TripletBatch RoomSource::draw(const std::vector<RoomTriplet>& shown, int first_frame,
+                              RoomRenderer& renderer) const {
   TripletBatch batch{.batch = batch_, .height = lens_.height, .width = lens_.width};
   std::vector<View> views;
   for (int frame = 0; frame < kFrames; ++frame) {
@@ -70,7 +71,7 @@ TripletBatch RoomSource::draw(const std::vector<Shown>& shown, int first_frame, 
 
 TripletBatch RoomSource::read(uint64_t step) {
   if (!whole_) whole_.emplace(*device_, lens_, rooms_, kFrames * batch_);
-  const std::vector<Shown> shown = choose(step);
+  const std::vector<RoomTriplet> shown = scenes(step);
   TripletBatch batch = draw(shown, 0, *whole_);
   for (int frame = 0; frame < kFrames; ++frame)
     batch.images[static_cast<std::size_t>(frame)] =
@@ -87,7 +88,7 @@ TripletBatch RoomSource::show(uint64_t step, const std::vector<bool>& reversed, 
   const int views = (kFrames - first_frame) * batch_;
   if (!training_ || training_->views() != views)
     training_.emplace(*device_, lens_, rooms_, views, RoomRenderer::Truth::kLeftOut);
-  std::vector<Shown> shown = choose(step);
+  std::vector<RoomTriplet> shown = scenes(step);
   for (std::size_t b = 0; b < shown.size(); ++b)
     if (reversed.at(b)) std::swap(shown[b].frames[0], shown[b].frames[2]);
   TripletBatch batch = draw(shown, first_frame, *training_);

@@ -10,6 +10,12 @@
 
 namespace vkopple {
 
+/// A scene and which of its frames are a triplet.
+struct RoomTriplet {
+  Scene scene;
+  std::array<int, 3> frames;
+};
+
 /// Triplets of rooms drawn on the device at every step, no two alike: triplet `b` of step `s` shows scene s *
 /// batch + b of the seed, in one of its evenly strided triplets of frames.
 class RoomSource : public TripletSource {
@@ -20,23 +26,18 @@ class RoomSource : public TripletSource {
   TripletBatch read(uint64_t step) override;
   /// No truth, no frames before `first_frame`; the images stay on the device.
   TripletBatch show(uint64_t step, const std::vector<bool>& reversed, int first_frame) override;
+  /// What `read` draws.
+  std::vector<RoomTriplet> scenes(uint64_t step) const;
 
  private:
-  using Frames = std::array<int, 3>;
-  struct Shown {
-    Scene scene;
-    Frames frames;
-  };
-
-  std::vector<Shown> choose(uint64_t step) const;
-  TripletBatch draw(const std::vector<Shown>& shown, int first_frame, RoomRenderer& renderer) const;
+  TripletBatch draw(const std::vector<RoomTriplet>& shown, int first_frame, RoomRenderer& renderer) const;
 
   const Device* device_;
   Lens lens_;
   RoomsConfig rooms_;
   int batch_;
   uint64_t seed_;
-  std::vector<Frames> choices_;  ///< the triplets of a scene
+  std::vector<std::array<int, 3>> choices_;  ///< the triplets of a scene
   /// Made when they are needed.
   std::optional<RoomRenderer> whole_, training_;
 };

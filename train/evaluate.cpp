@@ -51,8 +51,9 @@ Plane<float> plane(std::span<const float> values, int height, int width) {
 
 class Evaluation {
  public:
-  Evaluation(Perception& model, std::vector<std::vector<RgbImage>>* grid, size_t grid_rows)
-      : model_(model), grid_(grid), grid_rows_(grid_rows) {}
+  Evaluation(Perception& model, std::vector<std::vector<RgbImage>>* grid, size_t grid_rows,
+             const std::function<void(const ScoredImage&)>& look)
+      : model_(model), grid_(grid), grid_rows_(grid_rows), look_(look) {}
 
   void add(const TripletBatch& batch, size_t index) {
     const auto count = static_cast<size_t>(batch.batch);
@@ -63,12 +64,15 @@ class Evaluation {
     const auto inferred = mask_indices(part(percepts_.masks, index, count), entities);
     const auto true_objects = has_masks ? true_locations(batch, index) : std::vector<LabelledLocation>{};
     const auto objects = inferred_locations(part(percepts_.location, index, count));
-    scores_.add({.true_labels = labels,
-                 .predicted_labels = inferred,
-                 .true_depth = part(batch.depth, index, count),
-                 .predicted_depth = has_depth ? part(percepts_.depth, index, count) : std::span<const float>{},
-                 .true_objects = true_objects,
-                 .predicted_objects = objects});
+    const EvaluatedImage image{
+        .true_labels = labels,
+        .predicted_labels = inferred,
+        .true_depth = part(batch.depth, index, count),
+        .predicted_depth = has_depth ? part(percepts_.depth, index, count) : std::span<const float>{},
+        .true_objects = true_objects,
+        .predicted_objects = objects};
+    scores_.add(image);
+    if (look_) look_({batch, index, percepts_, image});
     if (grid_ != nullptr && grid_->size() < grid_rows_) add_row(batch, index, inferred, labels);
   }
 
@@ -100,6 +104,7 @@ class Evaluation {
   Perception& model_;
   std::vector<std::vector<RgbImage>>* grid_;
   size_t grid_rows_;
+  const std::function<void(const ScoredImage&)>& look_;
   Percepts percepts_;
   EvaluationScores scores_;
 };
@@ -119,8 +124,9 @@ std::vector<int32_t> mask_indices(std::span<const float> masks, int64_t entities
 
 EvaluationScores evaluate(Perception& model, TripletSource& source, int64_t images,
                           std::vector<std::vector<RgbImage>>* grid, size_t grid_rows,
-                          const std::function<void(int64_t)>& progress) {
-  Evaluation evaluation(model, grid, grid_rows);
+                          const std::function<void(int64_t)>& progress,
+                          const std::function<void(const ScoredImage&)>& look) {
+  Evaluation evaluation(model, grid, grid_rows, look);
   for (uint64_t step = 0; evaluation.scores().images() < images; ++step) {
     const TripletBatch batch = source.read(step);
     if (step == 0 && batch.label.empty() && batch.depth.empty())

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "runtime/error.h"
@@ -11,18 +10,27 @@
 namespace vkopple {
 namespace {
 
-constexpr double kGoodIou = 0.5;
-
 const LabelledLocation* find(std::span<const LabelledLocation> objects, std::int32_t label) {
   const auto found =
       std::find_if(objects.begin(), objects.end(), [&](const auto& o) { return o.label == label; });
   return found == objects.end() ? nullptr : &*found;
 }
 
-double angle(const LabelledLocation& object) { return std::atan2(object.x, object.y); }
-double distance(const LabelledLocation& object) { return std::hypot(object.x, object.y); }
-
 }  // namespace
+
+double LabelledLocation::angle() const { return std::atan2(x, y); }
+double LabelledLocation::distance() const { return std::hypot(x, y); }
+
+std::vector<MatchedObject> matched_objects(const EvaluatedImage& image, std::span<const Match> matches) {
+  std::vector<MatchedObject> all;
+  for (const Match& match : matches) {
+    if (match.true_label <= 0 || !match.predicted_label) continue;
+    const LabelledLocation* truth = find(image.true_objects, match.true_label);
+    const LabelledLocation* predicted = find(image.predicted_objects, *match.predicted_label);
+    if (truth != nullptr && predicted != nullptr) all.push_back({*truth, *predicted, match.iou});
+  }
+  return all;
+}
 
 void EvaluationScores::Mean::add(const std::optional<double>& value) {
   if (!value) return;
@@ -79,16 +87,12 @@ void EvaluationScores::add_depth(const EvaluatedImage& image) {
 }
 
 void EvaluationScores::add_locations(const EvaluatedImage& image, std::span<const Match> matches) {
-  for (const Match& match : matches) {
-    if (match.true_label <= 0 || !match.predicted_label) continue;
-    const LabelledLocation* truth = find(image.true_objects, match.true_label);
-    const LabelledLocation* predicted = find(image.predicted_objects, *match.predicted_label);
-    if (truth == nullptr || predicted == nullptr) continue;
-    angle_.add(angle(*truth), angle(*predicted));
-    distance_.add(distance(*truth), distance(*predicted));
-    if (match.iou <= kGoodIou) continue;
-    angle_good_.add(angle(*truth), angle(*predicted));
-    distance_good_.add(distance(*truth), distance(*predicted));
+  for (const auto& [truth, predicted, iou] : matched_objects(image, matches)) {
+    angle_.add(truth.angle(), predicted.angle());
+    distance_.add(truth.distance(), predicted.distance());
+    if (iou <= kGoodIou) continue;
+    angle_good_.add(truth.angle(), predicted.angle());
+    distance_good_.add(truth.distance(), predicted.distance());
   }
 }
 
@@ -110,25 +114,23 @@ Json EvaluationScores::to_json() const {
           {"without_depth", without_depth_}};
 }
 
+std::vector<NamedScore> EvaluationScores::named() const {
+  return {{"ARI-fg", ari_fg()},
+          {"ARI-fg, two objects or more", ari_fg_multi()},
+          {"IoU", iou()},
+          {"IoU of objects", iou_objects()},
+          {"depth r, mean over images", depth_r()},
+          {"depth r, all pixels", depth_r_pooled()},
+          {"angle r", angle_r()},
+          {"distance r", distance_r()},
+          {"angle r, IoU > 0.5", angle_r_good()},
+          {"distance r, IoU > 0.5", distance_r_good()}};
+}
+
 std::string EvaluationScores::to_table() const {
-  struct Row {
-    const char* name;
-    std::optional<double> value;
-  };
-  const std::array<Row, 10> rows{{{"ARI-fg", ari_fg()},
-                                  {"ARI-fg, two objects or more", ari_fg_multi()},
-                                  {"IoU", iou()},
-                                  {"IoU of objects", iou_objects()},
-                                  {"depth r, mean over images", depth_r()},
-                                  {"depth r, all pixels", depth_r_pooled()},
-                                  {"angle r", angle_r()},
-                                  {"distance r", distance_r()},
-                                  {"angle r, IoU > 0.5", angle_r_good()},
-                                  {"distance r, IoU > 0.5", distance_r_good()}}};
   std::string text;
-  for (const Row& row : rows) {
-    text += fmt::format("{:<28}{:>8}\n", row.name, row.value ? fmt::format("{:.3f}", *row.value) : "-");
-  }
+  for (const auto& [name, score] : named())
+    text += fmt::format("{:<28}{:>8}\n", name, score ? fmt::format("{:.3f}", *score) : "-");
   return text + fmt::format("{:<28}{:>8}\n{:<28}{:>8}\n", "images", images_, "  without foreground", skipped_);
 }
 

@@ -36,7 +36,7 @@ std::string scatter_plot(const std::vector<MatchedObject>& objects, const Scatte
     all.add(value(truth), value(inferred));
     if (iou > kGoodIou) good.add(value(truth), value(inferred));
   }
-  const Axis axis = Axis::linear(low, high);
+  const Axis axis = Axis::linear(low, high, 6);
   SvgPlot plot(axis, axis,
                {.title = fmt::format("inferred {}, {}", shown.title, shown.unit),
                 .x_title = fmt::format("true {}, {}", shown.title, shown.unit),
@@ -44,11 +44,14 @@ std::string scatter_plot(const std::vector<MatchedObject>& objects, const Scatte
   plot.line({{axis.low(), axis.low()}, {axis.high(), axis.high()}}, "dashed");
   for (const auto& [truth, inferred, iou] : objects)
     plot.dot({value(truth), value(inferred)}, 2.8, iou > kGoodIou ? "dot" : "faint");
-  const auto r = [](const Correlation& c) { return c.r() ? fmt::format("{:.3f}", *c.r()) : "undefined"; };
-  return figure_html(plot.svg(fmt::format("Inferred over true {} of matched objects", shown.title)),
-                     fmt::format("{} of {} matched objects: r = {}; of the {} with IoU &gt; 0.5: r = {}. "
-                                 "Dashed: where both are equal.",
-                                 shown.title, all.count(), r(all), good.count(), r(good)));
+  const auto r = [](const Correlation& c) {
+    return c.r() ? fmt::format("r = {:.3f}", *c.r()) : std::string("r is undefined");
+  };
+  return figure_html(
+      plot.svg(fmt::format("Inferred over true {} of matched objects", shown.title)),
+      fmt::format(
+          "The {} of {} matched objects: {}. Of the {} with IoU &gt; 0.5: {}. Dashed: where both are equal.",
+          shown.title, all.count(), r(all), good.count(), r(good)));
 }
 
 std::string all_from_above(const Report& report) {
@@ -57,21 +60,26 @@ std::string all_from_above(const Report& report) {
     if (pairs.size() == kMostFromAbove) break;
     pairs.push_back({PlotPoint{truth.x, truth.y}, PlotPoint{inferred.x, inferred.y}, iou > kGoodIou});
   }
+  TopViewReach reach;
+  reach.hold(pairs);
   return figure_html(
-      top_view(pairs, report.half_view, "True and inferred places of matched objects from above"),
-      fmt::format("{} matched objects of all images from above, the camera below in the middle, the "
-                  "borders of its view dashed: {}. A line joins the two places of an object.",
-                  pairs.size(), kKey));
+      top_view(pairs, reach, report.half_view, "True and inferred places of matched objects from above"),
+      fmt::format("{} of {} matched objects from above, the camera below in the middle, the borders of its "
+                  "view dashed: "
+                  "{}. A line joins the two places of an object.",
+                  pairs.size(), report.held_out.matched.size(), kKey));
 }
 
 std::string each_from_above(const Report& report) {
+  const auto& images = report.held_out.from_above;
+  TopViewReach reach;
+  for (const auto& pairs : images) reach.hold(pairs);
   std::string html;
-  for (std::size_t i = 0; i < report.held_out.from_above.size(); ++i) {
-    if (report.held_out.from_above[i].empty()) continue;
-    html += figure_html(top_view(report.held_out.from_above[i], report.half_view,
-                                 fmt::format("Places of objects of image {} from above", i + 1)),
-                        fmt::format("Image {}", i + 1));
-  }
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (!images[i].empty())
+      html += figure_html(top_view(images[i], reach, report.half_view,
+                                   fmt::format("Places of objects of image {} from above", i + 1)),
+                          fmt::format("Image {}", i + 1));
   if (html.empty()) return html;
   return "<h3>The first images one by one</h3>\n<p class=\"quiet\">With the places of all slots and of all "
          "objects in "

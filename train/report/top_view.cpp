@@ -6,20 +6,6 @@
 namespace vkopple {
 namespace {
 
-constexpr double kLeastReach = 2;  // scene units that are shown at least
-
-/// How far places lie to the side and ahead, and behind.
-struct Reach {
-  double side = kLeastReach, ahead = kLeastReach, behind = 0;
-
-  void hold(const std::optional<PlotPoint>& p) {
-    if (!p) return;
-    side = std::max(side, std::abs(p->x));
-    ahead = std::max(ahead, p->y);
-    behind = std::min(behind, p->y);
-  }
-};
-
 /// From the camera along the border of its view up to the plot's.
 PlotPoint border(double angle, const Axis& x, const Axis& y) {
   const double side = std::sin(angle), forward = std::cos(angle);
@@ -30,14 +16,21 @@ PlotPoint border(double angle, const Axis& x, const Axis& y) {
 
 }  // namespace
 
-std::string top_view(const std::vector<PlacedPair>& pairs, double half_view, std::string_view text) {
-  Reach reach;
-  for (const PlacedPair& pair : pairs) {
-    reach.hold(pair.truth);
-    reach.hold(pair.inferred);
-  }
-  const Axis x = Axis::linear(-reach.side, reach.side, 6), y = Axis::linear(reach.behind, reach.ahead, 4);
-  SvgPlot plot(x, y, {.title = "y, forward", .x_title = "x, right", .same_scale = true});
+void TopViewReach::hold(const std::vector<PlacedPair>& pairs) {
+  for (const PlacedPair& pair : pairs)
+    for (const std::optional<PlotPoint>& place : {pair.truth, pair.inferred}) {
+      if (!place) continue;
+      side = std::max(side, std::abs(place->x));
+      ahead = std::max(ahead, place->y);
+      behind = std::min(behind, place->y);
+    }
+}
+
+std::string top_view(const std::vector<PlacedPair>& pairs, const TopViewReach& reach, double half_view,
+                     std::string_view text) {
+  const Axis x = Axis::linear(-reach.side, reach.side, 6), y = Axis::linear(reach.behind, reach.ahead);
+  SvgPlot plot(x, y,
+               {.title = "y, forward, scene units", .x_title = "x, right, scene units", .same_scale = true});
   for (const double angle : {-half_view, half_view}) plot.line({{0, 0}, border(angle, x, y)}, "dashed");
   const double foot = (x.high() - x.low()) / 50;
   plot.area({{-foot, 0}, {foot, 0}, {0, 2 * foot}}, "camera");

@@ -34,14 +34,17 @@ class Steps {
     axis_ = Axis::linear(0, last, 4);
   }
 
-  std::string plot(const std::string& title, const Curve& curve, bool dots = false) const {
+  enum class Kind { kAny, kScore };
+
+  /// Scores are drawn up to 1, which is perfect, with a dot for each.
+  std::string plot(const std::string& title, const Curve& curve, Kind kind = Kind::kAny) const {
     const auto parts = stretches(curve, kMostStretches);
     double low = parts[0].low, high = parts[0].high;
     for (const CurveStretch& s : parts) {
       low = std::min(low, s.low);
       high = std::max(high, s.high);
     }
-    const Axis y = Axis::fitting(low, high);
+    const Axis y = kind == Kind::kScore ? Axis::linear(std::min(low, 0.0), 1) : Axis::fitting(low, high);
     SvgPlot plot(axis_, y, {.title = title + (y.is_logarithmic() ? ", logarithmic" : ""), .x_title = "step"});
     mark(plot);
     std::vector<PlotPoint> around, line;
@@ -52,7 +55,7 @@ class Steps {
     for (auto s = parts.rbegin(); s != parts.rend(); ++s) around.push_back({s->x, s->low});
     if (parts.size() < curve.size()) plot.area(around, "band");
     plot.line(line, "line");
-    if (dots || line.size() == 1)
+    if (kind == Kind::kScore || line.size() == 1)
       for (const PlotPoint& point : line) plot.dot(point, 2.5, "dot");
     return figure_html(plot.svg(title + " over the steps of training"),
                        fmt::format("{} at the end", number(curve.back().y)));
@@ -93,7 +96,8 @@ std::string plots(const Report& report) {
     static const std::map<std::string, std::string> kTitles{
         {"ari_fg", "ARI-fg"}, {"iou", "IoU"}, {"depth_r", "depth r, mean over images"}};
     html += "<h3>Scores in rooms that training never draws</h3>\n<div class=\"plots\">\n";
-    for (const auto& [name, curve] : curves.held_out) html += steps.plot(kTitles.at(name), curve, true);
+    for (const auto& [name, curve] : curves.held_out)
+      html += steps.plot(kTitles.at(name), curve, Steps::Kind::kScore);
     html += "</div>\n";
   }
   html += "<h3>Time</h3>\n<div class=\"plots\">\n" + steps.plot("seconds a step", curves.seconds) +
@@ -112,9 +116,9 @@ std::string training_section(const Report& report) {
   std::string html = fmt::format(
       "<p>{} steps. A line is the mean of a stretch of steps, the shade around it reaches from the least to "
       "the largest "
-      "value there. Stages of training begin at dashed lines; their losses are sums of different terms. The "
-      "collapse "
-      "term is negative by its nature: lower is better everywhere here.</p>\n",
+      "value there. Stages of training begin at dashed lines; what they add up to a total differs. Of all "
+      "losses lower is "
+      "better; that of collapse is negative by its nature.</p>\n",
       curves.steps);
   if (curves.not_finite > 0)
     html += fmt::format("<p class=\"note\">{} losses were no finite number and are left out.</p>\n",

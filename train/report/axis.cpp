@@ -37,6 +37,14 @@ Axis Axis::linear(double low, double high, int wanted) {
   return {std::move(ticks), false};
 }
 
+Axis Axis::within(double low, double high, int wanted) {
+  Axis axis = linear(low, high, wanted);
+  axis.low_ = low;
+  axis.high_ = high;
+  std::erase_if(axis.ticks_, [&](double tick) { return tick < low || tick > high; });
+  return axis;
+}
+
 Axis Axis::logarithmic(double low, double high) {
   if (low > high) std::swap(low, high);
   std::vector<double> ticks, powers;

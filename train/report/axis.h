@@ -13,13 +13,15 @@ class Axis {
   /// Holds low to high and begins and ends with a round number; about `wanted` of them lie on it. Anything
   /// finite, in any order.
   static Axis linear(double low, double high, int wanted = 5);
-  /// Likewise, begins and ends with 1, 2 or 5 times a power of ten; for values above 0.
+  /// From low to high, and the round numbers that lie between; for low below high.
+  static Axis within(double low, double high, int wanted = 5);
+  /// Holds low to high and begins and ends with 1, 2 or 5 times a power of ten; for values above 0.
   static Axis logarithmic(double low, double high);
   /// Logarithmic where all values are above 0 and the largest is many times the least.
   static Axis fitting(double low, double high);
 
-  double low() const { return ticks_.front(); }
-  double high() const { return ticks_.back(); }
+  double low() const { return low_; }
+  double high() const { return high_; }
   bool is_logarithmic() const { return logarithmic_; }
   const std::vector<double>& ticks() const { return ticks_; }
 
@@ -29,8 +31,11 @@ class Axis {
   std::string label(double tick) const;
 
  private:
-  Axis(std::vector<double> ticks, bool logarithmic) : ticks_(std::move(ticks)), logarithmic_(logarithmic) {}
+  /// From the first tick to the last.
+  Axis(std::vector<double> ticks, bool logarithmic)
+      : low_(ticks.front()), high_(ticks.back()), ticks_(std::move(ticks)), logarithmic_(logarithmic) {}
 
+  double low_, high_;
   std::vector<double> ticks_;
   bool logarithmic_;
 };

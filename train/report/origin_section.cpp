@@ -24,7 +24,7 @@ std::string origin_section(const Report& report) {
   std::string html = "<table class=\"words\"><tbody>\n";
   for (const auto& [name, value] : rows)
     html += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", name, escape_html(value));
-  html += fmt::format("</tbody></table>\n<h3>Command</h3>\n<pre tabindex=\"0\">{}</pre>\n",
+  html += fmt::format("</tbody></table>\n<h3>Command</h3>\n<pre class=\"wrap\">{}</pre>\n",
                       escape_html(report.command));
   html += fmt::format(
       "<h3>Configuration</h3>\n<details><summary>All of it, as the model carries it</summary>\n<pre "

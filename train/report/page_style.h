@@ -65,8 +65,9 @@ td.number, th.number { text-align: right; padding-right: 0; padding-left: 1.5rem
 .pictures .head { color: var(--quiet); font-size: .85rem; line-height: 1.2; align-items: end; }
 .pictures figcaption { margin-bottom: .75rem; }
 img { display: block; width: 100%; height: auto; image-rendering: pixelated; }
-img + .below, .below { display: none; color: var(--quiet); font-size: .8rem; line-height: 1.2; }
+.below { display: none; color: var(--quiet); font-size: .8rem; line-height: 1.2; }
 pre { margin: .5rem 0; padding: .75rem; overflow-x: auto; background: var(--shade); font: .82rem/1.45 ui-monospace, "DejaVu Sans Mono", monospace; }
+.wrap { white-space: pre-wrap; overflow-wrap: anywhere; }
 summary { cursor: pointer; }
 @media (max-width: 40rem) {
   .pictures .row { grid-template-columns: repeat(var(--narrow), minmax(0, 1fr)); }

@@ -9,7 +9,8 @@
 namespace vkopple {
 namespace {
 
-constexpr double kLeft = 46, kRight = 12, kTop = 24, kBottom = 34;  // margins around what the axes span
+constexpr double kLine = 13;                                        // of words
+constexpr double kLeft = 46, kRight = 18, kTop = 24, kBottom = 34;  // margins around what the axes span
 
 }  // namespace
 
@@ -45,13 +46,13 @@ void SvgPlot::area(const std::vector<PlotPoint>& points, std::string_view css) {
   drawn_ += fmt::format("<polygon class=\"{}\" points=\"{}\"/>\n", css, coordinates(points));
 }
 
-void SvgPlot::upright(double at, std::string_view text) {
+void SvgPlot::upright(double at, std::string_view text, int line) {
   const double across = x(at);
   const bool right_half = across > look_.width / 2;
   drawn_ += fmt::format(
       "<line class=\"dashed\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2:.1f}\"/>\n"
       "<text x=\"{3:.1f}\" y=\"{4}\" text-anchor=\"{5}\">{6}</text>\n",
-      across, kTop, look_.height - kBottom, across + (right_half ? -4 : 4), kTop + 11,
+      across, kTop, look_.height - kBottom, across + (right_half ? -4 : 4), kTop + 11 + kLine * line,
       right_half ? "end" : "start", escape_html(text));
 }
 

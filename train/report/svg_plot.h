@@ -34,8 +34,8 @@ class SvgPlot {
   void dot(PlotPoint at, double radius, std::string_view css);
   /// A closed shape.
   void area(const std::vector<PlotPoint>& points, std::string_view css);
-  /// A dashed line over the whole height with a word at its top.
-  void upright(double at, std::string_view text);
+  /// A dashed line over the whole height with a word beside it, in a line of words counted from the top.
+  void upright(double at, std::string_view text, int line = 0);
 
   /// `text` says what it shows to those who don't see it.
   std::string svg(std::string_view text) const;

@@ -30,8 +30,7 @@ std::string loss_title(const std::string& term) {
 class Steps {
  public:
   explicit Steps(const Report& report) : report_(&report), curves_(&*report.curves) {
-    const double last = curves_->seconds.empty() ? 1 : curves_->seconds.back().x;
-    axis_ = Axis::linear(0, last, 4);
+    axis_ = Axis::within(0, std::max(curves_->seconds.back().x, 1.0), 4);
   }
 
   enum class Kind { kAny, kScore };
@@ -58,7 +57,7 @@ class Steps {
     if (kind == Kind::kScore || line.size() == 1)
       for (const PlotPoint& point : line) plot.dot(point, 2.5, "dot");
     return figure_html(plot.svg(title + " over the steps of training"),
-                       fmt::format("{} at the end", number(curve.back().y)));
+                       fmt::format("{} in the last step", number(curve.back().y)));
   }
 
  private:
@@ -70,7 +69,7 @@ class Steps {
     if (curves_->stages.size() > 1 && curves_->stages.size() <= kMostStageMarks)
       for (const StageBegin& stage : curves_->stages) plot.upright(static_cast<double>(stage.step), stage.name);
     const auto here = static_cast<double>(report_->position.step);
-    if (here < curves_->seconds.back().x) plot.upright(here, "this model");
+    if (here < curves_->seconds.back().x) plot.upright(here, "this model", 1);
   }
 
   const Report* report_;

@@ -25,6 +25,13 @@ TEST(Axis, LinearTicksAreRound) {
   EXPECT_THAT(labels(Axis::linear(0, 3e6)), ElementsAre("0", "1e+06", "2e+06", "3e+06"));
 }
 
+TEST(Axis, WithinItsEndsNeedNotBeRound) {
+  const Axis axis = Axis::within(0, 50, 4);
+  EXPECT_THAT(labels(axis), ElementsAre("0", "20", "40"));
+  EXPECT_EQ(axis.high(), 50);
+  EXPECT_DOUBLE_EQ(axis.place(25), 0.5);
+}
+
 TEST(Axis, ASingleValueHasAnAxisToo) {
   for (const double value : {0.0, 5.0, -1e-9, 1e12}) {
     const Axis axis = Axis::linear(value, value);

@@ -15,11 +15,11 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 SvgPlot plot() {
   return {Axis::linear(0, 60, 4),
           Axis::linear(0, 2, 2),
-          {.title = "loss <1>", .x_title = "step", .width = 258, .height = 158}};
+          {.title = "loss <1>", .x_title = "step", .width = 264, .height = 158}};
 }
 
 TEST(SvgPlot, ValuesGoToTheirPlaces) {
-  const SvgPlot p = plot();  // 46 + 200 + 12 across, 24 + 100 + 34 down
+  const SvgPlot p = plot();  // 46 + 200 + 18 across, 24 + 100 + 34 down
   EXPECT_DOUBLE_EQ(p.x(0), 46);
   EXPECT_DOUBLE_EQ(p.x(30), 146);
   EXPECT_DOUBLE_EQ(p.x(60), 246);
@@ -33,16 +33,16 @@ TEST(SvgPlot, DrawsWhatItIsTold) {
   p.line({{0, 0}, {30, 1}}, "line");
   p.area({{0, 2}, {60, 2}, {60, 0}}, "band");
   p.dot({60, 2}, 2.5, "dot");
-  p.upright(15, "a & b");
+  p.upright(15, "a & b", 1);
   const std::string svg = p.svg("says \"it\"");
   EXPECT_TRUE(holds(svg, R"(<polyline class="line" points="46.0,124.0 146.0,74.0"/>)")) << svg;
   EXPECT_TRUE(holds(svg, R"(<polygon class="band" points="46.0,24.0 246.0,24.0 246.0,124.0"/>)")) << svg;
   EXPECT_TRUE(holds(svg, R"(<circle class="dot" cx="246.0" cy="24.0" r="2.5"/>)")) << svg;
   EXPECT_TRUE(holds(svg, R"(<line class="dashed" x1="96.0" x2="96.0" y1="24" y2="124.0"/>)")) << svg;
-  EXPECT_TRUE(holds(svg, "a &amp; b")) << svg;
+  EXPECT_TRUE(holds(svg, "<text x=\"100.0\" y=\"48\" text-anchor=\"start\">a &amp; b</text>")) << svg;
   EXPECT_TRUE(holds(svg, "loss &lt;1&gt;</text>")) << svg;
   EXPECT_TRUE(holds(svg, "aria-label=\"says &quot;it&quot;\"")) << svg;
-  EXPECT_TRUE(holds(svg, R"(viewBox="0 0 258 158")")) << svg;
+  EXPECT_TRUE(holds(svg, R"(viewBox="0 0 264 158")")) << svg;
 }
 
 TEST(SvgPlot, TheSameScaleAlongBothAxes) {
@@ -77,9 +77,9 @@ TEST(TopView, ShowsPairsAndWhatIsAlone) {
   EXPECT_EQ(count("class=\"dot\""), 1);
   EXPECT_EQ(count("class=\"faint\""), 1);
   EXPECT_EQ(count("class=\"link\""), 1);
-  // 282 pixels across for 4 units from -2 on, 70.5 each.
-  EXPECT_TRUE(holds(svg, R"(class="ring" cx="116.5")")) << svg;
-  EXPECT_TRUE(holds(svg, R"(class="dot" cx="257.5")")) << svg;
+  // 276 pixels across for 4 units from -2 on, 69 each.
+  EXPECT_TRUE(holds(svg, R"(class="ring" cx="115.0")")) << svg;
+  EXPECT_TRUE(holds(svg, R"(class="dot" cx="253.0")")) << svg;
 }
 
 TEST(TopView, PlacesBehindTheCameraAreHeldToo) {

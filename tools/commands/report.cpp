@@ -106,6 +106,8 @@ void run(const Options& o) {
   warn_if_untrained(model, networks_of(model.config.model));
   report.held_out = look(o, device, model, *source, batch);
   report.predictions = predict(device, model, report.held_out.triplets);
+  if (const int64_t scored = report.held_out.scores.images(); scored < o.images)
+    fmt::print(stderr, "{}: {} of {} images scored, there are no more\n", o.data, scored, o.images);
   const std::filesystem::path page = folder / "index.html";
   write_file(page, report_page(report));
   tell(o, page, report.held_out.scores);

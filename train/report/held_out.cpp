@@ -4,9 +4,9 @@
 #include <cmath>
 #include <span>
 
-#include "runtime/error.h"
 #include "train/evaluate.h"
 #include "train/metrics.h"
+#include "train/require_numbers.h"
 
 namespace vkopple {
 namespace {
@@ -14,11 +14,6 @@ namespace {
 /// Triplet `index` of a batch, `each` numbers of it.
 std::span<const float> part(const std::vector<float>& values, std::size_t index, std::size_t each) {
   return std::span(values).subspan(index * each, each);
-}
-
-void require_numbers(const std::vector<float>& values) {
-  if (std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) return;
-  throw Error("what the model infers is not a finite number; its weights are unusable, train it again");
 }
 
 TripletFrames frames_of(const TripletBatch& batch, std::size_t index) {

@@ -60,6 +60,7 @@ TEST(Axis, Places) {
   const Axis linear = Axis::linear(0, 60, 4);
   EXPECT_DOUBLE_EQ(linear.place(15), 0.25);
   EXPECT_DOUBLE_EQ(linear.place(75), 1.25);
+  EXPECT_DOUBLE_EQ(Axis::linear(-3, 1).place(0), 0.75);
   const Axis logarithmic = Axis::logarithmic(0.01, 100);
   EXPECT_DOUBLE_EQ(logarithmic.place(1), 0.5);
   EXPECT_DOUBLE_EQ(logarithmic.place(0.1), 0.25);

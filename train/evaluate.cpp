@@ -43,13 +43,15 @@ class Evaluation {
     const auto inferred = mask_indices(equal_part(percepts_.masks, index, count), entities);
     const auto objects = inferred_locations(equal_part(percepts_.location, index, count));
     const bool has_depth = !truth.depth.empty();
-    scores_.add(
-        {.true_labels = truth.labels,
-         .predicted_labels = inferred,
-         .true_depth = truth.depth,
-         .predicted_depth = has_depth ? equal_part(percepts_.depth, index, count) : std::span<const float>{},
-         .true_objects = truth.objects,
-         .predicted_objects = objects});
+    const EvaluatedImage image{
+        .true_labels = truth.labels,
+        .predicted_labels = inferred,
+        .true_depth = truth.depth,
+        .predicted_depth = has_depth ? equal_part(percepts_.depth, index, count) : std::span<const float>{},
+        .true_objects = truth.objects,
+        .predicted_objects = objects};
+    scores_.add(image);
+    if (options_.look) options_.look({batch, index, percepts_, image});
     if (options_.grid != nullptr && options_.grid->size() < options_.grid_rows)
       add_row(batch, index, inferred, truth.labels);
   }

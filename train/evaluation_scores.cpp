@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,18 +11,27 @@
 namespace vkopple {
 namespace {
 
-constexpr double kGoodIou = 0.5;
-
 const LabelledLocation* find(std::span<const LabelledLocation> objects, std::int32_t label) {
   const auto found =
       std::find_if(objects.begin(), objects.end(), [&](const auto& o) { return o.label == label; });
   return found == objects.end() ? nullptr : &*found;
 }
 
-double angle(const LabelledLocation& object) { return std::atan2(object.x, object.y); }
-double distance(const LabelledLocation& object) { return std::hypot(object.x, object.y); }
-
 }  // namespace
+
+double LabelledLocation::angle() const { return std::atan2(x, y); }
+double LabelledLocation::distance() const { return std::hypot(x, y); }
+
+std::vector<MatchedObject> matched_objects(const EvaluatedImage& image, std::span<const Match> matches) {
+  std::vector<MatchedObject> all;
+  for (const Match& match : matches) {
+    if (match.true_label <= 0 || !match.predicted_label) continue;
+    const LabelledLocation* truth = find(image.true_objects, match.true_label);
+    const LabelledLocation* predicted = find(image.predicted_objects, *match.predicted_label);
+    if (truth != nullptr && predicted != nullptr) all.push_back({*truth, *predicted, match.iou});
+  }
+  return all;
+}
 
 void EvaluationScores::Mean::add(const std::optional<double>& value) {
   if (!value) return;
@@ -80,16 +88,12 @@ void EvaluationScores::add_depth(const EvaluatedImage& image) {
 }
 
 void EvaluationScores::add_locations(const EvaluatedImage& image, std::span<const Match> matches) {
-  for (const Match& match : matches) {
-    if (match.true_label <= 0 || !match.predicted_label) continue;
-    const LabelledLocation* truth = find(image.true_objects, match.true_label);
-    const LabelledLocation* predicted = find(image.predicted_objects, *match.predicted_label);
-    if (truth == nullptr || predicted == nullptr) continue;
-    angle_.add(angle(*truth), angle(*predicted));
-    distance_.add(distance(*truth), distance(*predicted));
-    if (match.iou <= kGoodIou) continue;
-    angle_good_.add(angle(*truth), angle(*predicted));
-    distance_good_.add(distance(*truth), distance(*predicted));
+  for (const auto& [truth, predicted, iou] : matched_objects(image, matches)) {
+    angle_.add(truth.angle(), predicted.angle());
+    distance_.add(truth.distance(), predicted.distance());
+    if (iou <= kGoodIou) continue;
+    angle_good_.add(truth.angle(), predicted.angle());
+    distance_good_.add(truth.distance(), predicted.distance());
   }
 }
 
@@ -120,19 +124,20 @@ Json EvaluationScores::to_json() const {
   return json;
 }
 
+std::vector<NamedScore> EvaluationScores::named() const {
+  return {{"ARI-fg", ari_fg()},
+          {"ARI-fg, two objects or more", ari_fg_multi()},
+          {"IoU", iou()},
+          {"IoU of objects", iou_objects()},
+          {"depth r, mean over images", depth_r()},
+          {"depth r, all pixels", depth_r_pooled()},
+          {"angle r", angle_r()},
+          {"distance r", distance_r()},
+          {"angle r, IoU > 0.5", angle_r_good()},
+          {"distance r, IoU > 0.5", distance_r_good()}};
+}
+
 std::string score_table(const std::vector<ScoreColumn>& columns) {
-  using Score = std::optional<double> (EvaluationScores::*)() const;
-  constexpr std::array<std::pair<const char*, Score>, 10> kRows{
-      {{"ARI-fg", &EvaluationScores::ari_fg},
-       {"ARI-fg, two objects or more", &EvaluationScores::ari_fg_multi},
-       {"IoU", &EvaluationScores::iou},
-       {"IoU of objects", &EvaluationScores::iou_objects},
-       {"depth r, mean over images", &EvaluationScores::depth_r},
-       {"depth r, all pixels", &EvaluationScores::depth_r_pooled},
-       {"angle r", &EvaluationScores::angle_r},
-       {"distance r", &EvaluationScores::distance_r},
-       {"angle r, IoU > 0.5", &EvaluationScores::angle_r_good},
-       {"distance r, IoU > 0.5", &EvaluationScores::distance_r_good}}};
   std::string text;
   const auto add_row = [&](const char* name, const auto& cell) {
     text += fmt::format("{:<28}", name);
@@ -142,9 +147,10 @@ std::string score_table(const std::vector<ScoreColumn>& columns) {
     text += '\n';
   };
   if (columns.size() > 1) add_row("", [](const ScoreColumn& column) { return column.title; });
-  for (const auto& [name, score] : kRows)
-    add_row(name, [&, of = score](const ScoreColumn& column) {
-      const std::optional<double> value = (column.scores->*of)();
+  const std::vector<NamedScore> rows = columns.at(0).scores->named();
+  for (size_t row = 0; row < rows.size(); ++row)
+    add_row(rows[row].name, [&](const ScoreColumn& column) {
+      const std::optional<double> value = column.scores->named()[row].value;
       return value ? fmt::format("{:.3f}", *value) : std::string("-");
     });
   const auto add_count = [&](const char* name, std::int64_t count) {

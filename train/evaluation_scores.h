@@ -15,6 +15,9 @@ namespace vkopple {
 struct LabelledLocation {
   std::int32_t label;  ///< in the label map that shows it
   double x, y;
+
+  double angle() const;     ///< atan2(x, y), radians: to the right of straight ahead
+  double distance() const;  ///< √(x² + y²)
 };
 
 /// One image with what is true of it and what was inferred. All maps have the same number of pixels.
@@ -25,6 +28,24 @@ struct EvaluatedImage {
   std::span<const float> predicted_depth;
   std::span<const LabelledLocation> true_objects;       ///< may be empty
   std::span<const LabelledLocation> predicted_objects;  ///< without background
+};
+
+/// Above it an object counts as found.
+inline constexpr double kGoodIou = 0.5;
+
+/// An object with the slot that it was matched with, where both have places.
+struct MatchedObject {
+  LabelledLocation truth, predicted;
+  double iou;
+};
+
+/// Of the objects in `matches` (match_entities) those that are matched with a slot other than background.
+std::vector<MatchedObject> matched_objects(const EvaluatedImage& image, std::span<const Match> matches);
+
+/// A score by the name that people read.
+struct NamedScore {
+  std::string name;
+  std::optional<double> value;
 };
 
 /// Collects the scores of section 10 of the model's description over many images.
@@ -60,6 +81,9 @@ class EvaluationScores {
   /// The two halves of it.
   Json scores_json() const;
   Json counts_json() const;
+
+  /// The correlations and means above, in their order.
+  std::vector<NamedScore> named() const;
 
   /// What is left out of which scores, a line each.
   std::vector<std::string> left_out() const;

@@ -116,6 +116,14 @@ RgbImage depth_picture(const Plane<float>& depth, float farthest) {
   return out;
 }
 
+RgbImage grey_picture(const Plane<float>& plane) {
+  RgbImage image(plane.height, plane.width);
+  for (size_t c = 0; c < 3; ++c)
+    std::copy(plane.pixels.begin(), plane.pixels.end(),
+              image.pixels.begin() + static_cast<std::ptrdiff_t>(c * plane.pixels.size()));
+  return image;
+}
+
 RgbImage picture_grid(const std::vector<std::vector<RgbImage>>& rows) {
   if (rows.empty() || rows[0].empty()) throw Error("a picture grid needs at least one picture");
   const int height = rows[0][0].height;

@@ -26,6 +26,9 @@ RgbImage overlay(const RgbImage& image, std::span<const int32_t> labels, int32_t
 /// Depth as colour, from bright yellow (near) over red and purple to black (at `farthest` and beyond).
 RgbImage depth_picture(const Plane<float>& depth, float farthest);
 
+/// Values from 0 to 1 as grey, from black to white.
+RgbImage grey_picture(const Plane<float>& plane);
+
 /// One row of pictures a sample, all of one size, with thin white gaps.
 RgbImage picture_grid(const std::vector<std::vector<RgbImage>>& rows);
 

@@ -5,16 +5,11 @@
 #include <numbers>
 #include <span>
 
-#include "runtime/error.h"
 #include "train/evaluate.h"
+#include "train/require_numbers.h"
 
 namespace vkopple {
 namespace {
-
-void require_numbers(const std::vector<float>& values) {
-  if (std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); })) return;
-  throw Error("what the model infers is not a finite number; its weights are unusable, train it again");
-}
 
 double share_of(const Plane<std::uint32_t>& mask, std::uint32_t index) {
   const auto count = std::count(mask.pixels.begin(), mask.pixels.end(), index);

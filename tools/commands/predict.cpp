@@ -12,12 +12,12 @@
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/output_folder.h"
-#include "train/trained_networks.h"
 #include "train/checkpoint.h"
 #include "train/frame_poses.h"
 #include "train/image_io.h"
 #include "train/pictures.h"
 #include "train/predictor.h"
+#include "train/trained_networks.h"
 #include "train/tuning_file.h"
 
 namespace vkopple {
@@ -53,14 +53,6 @@ Frames read_frames(const Options& o, const ModelConfig& config) {
   return frames;
 }
 
-RgbImage grey(const Plane<float>& plane) {
-  RgbImage image(plane.height, plane.width);
-  for (size_t c = 0; c < 3; ++c)
-    std::copy(plane.pixels.begin(), plane.pixels.end(),
-              image.pixels.begin() + static_cast<std::ptrdiff_t>(c * plane.pixels.size()));
-  return image;
-}
-
 Plane<uint8_t> bytes(const Plane<float>& plane) {
   Plane<uint8_t> out(plane.height, plane.width);
   std::transform(plane.pixels.begin(), plane.pixels.end(), out.pixels.begin(),
@@ -71,7 +63,7 @@ Plane<uint8_t> bytes(const Plane<float>& plane) {
 std::string write_comparison(const OutputFolder& folder, const Frames& frames,
                              const PredictedFrame& predicted) {
   std::vector<RgbImage> row{frames.first,       frames.second,       predicted.warped,
-                            predicted.imagined, predicted.predicted, grey(predicted.weight)};
+                            predicted.imagined, predicted.predicted, grey_picture(predicted.weight)};
   if (frames.truth) row.push_back(*frames.truth);
   const int zoom = zoom_for(frames.first.height);
   for (RgbImage& picture : row) picture = enlarge(picture, zoom);

@@ -71,6 +71,8 @@ class TripletScene {
   std::vector<ObjectTruth> objects(int frame, const Plane<uint32_t>& ids) const {
     std::vector<ObjectTruth> truths;
     for (const auto& location : scene_.locations_in_camera(frame)) truths.push_back({location, 0});
+    const auto yaws = scene_.yaws_in_camera(frame);
+    for (std::size_t i = 0; i < truths.size(); ++i) truths[i].yaw = yaws[i];
     for (const uint32_t id : ids.pixels) {
       if (id > truths.size())
         throw Error(fmt::format("{}: objectId {} is not among the {} objects of the JSON",

@@ -13,6 +13,7 @@ namespace vkopple {
 struct ObjectTruth {
   std::array<double, 3> location{};  ///< of its middle in the camera's frame: x right, y forward, z up
   uint64_t pixels = 0;               ///< that show it, by their centres; 0: out of sight
+  std::optional<double> yaw;         ///< in the camera's frame, counter-clockwise seen from above, radians
 };
 
 /// In place of the labels of a triplet of which they are unknown.

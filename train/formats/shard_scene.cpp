@@ -100,6 +100,15 @@ std::vector<std::array<double, 3>> ShardScene::locations_in_camera(int frame) co
   return all;
 }
 
+std::vector<std::optional<double>> ShardScene::yaws_in_camera(int frame) const {
+  const JsonView listed = frame_view(frame)["objects"];
+  const auto seen_from = camera(frame);
+  std::vector<std::optional<double>> all(listed.size());
+  for (std::size_t i = 0; i < listed.size(); ++i)
+    if (seen_from && listed[i].contains("yaw")) all[i] = listed[i]["yaw"].number() - (*seen_from)[3];
+  return all;
+}
+
 std::vector<PlacedObject> ShardScene::objects(int frame) const {
   const JsonView listed = frame_view(frame)["objects"];
   std::vector<PlacedObject> all;

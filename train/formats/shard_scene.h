@@ -28,6 +28,8 @@ class ShardScene {
   bool has_objects(int frame) const { return frame_view(frame).contains("objects"); }
   /// Of each object, in the camera's frame.
   std::vector<std::array<double, 3>> locations_in_camera(int frame) const;
+  /// Of each object, less the camera's; nothing where either is unknown.
+  std::vector<std::optional<double>> yaws_in_camera(int frame) const;
 
   /// Of a sample with all its parts.
   SceneData whole() const;

@@ -23,8 +23,9 @@ Slice part(const Slice& whole, int index, int count) {
 /// `label`: of the frame, at the pixels' centres.
 std::vector<ObjectTruth> truth_of(const Scene& scene, int frame, std::span<const uint32_t> label) {
   std::vector<ObjectTruth> objects;
+  const RoomCamera& camera = scene.cameras[static_cast<std::size_t>(frame)];
   for (const RoomObject& object : scene.objects)
-    objects.push_back({scene.cameras[static_cast<std::size_t>(frame)].see(object.position(frame)), 0});
+    objects.push_back({camera.see(object.position(frame)), 0, object.yaw(frame) - camera.yaw});
   for (const uint32_t id : label)
     if (id > 0) ++objects[id - 1].pixels;
   return objects;

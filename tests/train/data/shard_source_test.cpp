@@ -41,7 +41,7 @@ Sample scene(int number, int frames, int height = 4, int width = 6) {
     layers.ids.pixels[1] = 1;
     sample.parts[fmt::format("{}.exr", frame)] = encode_exr(layers);
     list += fmt::format(
-        R"({}{{"camera": [{}, {}, 0.7, 0, 0, 0], "objects": [{{"location_in_camera": [1, 2, 3]}}]}})",
+        R"({}{{"camera": [{}, {}, 0.7, 0.5, 0, 0], "objects": [{{"location_in_camera": [1, 2, 3], "yaw": 2}}]}})",
         frame == 0 ? "" : ", ", frame, number);
   }
   sample.parts["json"] = to_bytes(fmt::format(R"({{"fov": 1.0, "frames": [{}]}})", list));
@@ -137,6 +137,7 @@ TEST_F(ShardSourceTest, EvaluationTakesEachSceneOnceInOrder) {
   ASSERT_EQ(batch.objects.size(), 2U);
   EXPECT_EQ(batch.objects[1][0].location, (std::array<double, 3>{1, 2, 3}));
   EXPECT_EQ(batch.objects[1][0].pixels, 1U);
+  EXPECT_EQ(batch.objects[1][0].yaw, 1.5);
 }
 
 TEST_F(ShardSourceTest, OtherSizesAreResampled) {

@@ -77,6 +77,17 @@ TEST(RoomSource, ShapesAndTruthFit) {
   EXPECT_GE(looked_at, 4);
 }
 
+TEST(RoomSource, YawIsThatSeenFromTheCamera) {
+  RoomsConfig rooms;
+  rooms.frames = 3;
+  RoomSource source(test_device(), kLens, rooms, 1, 8);
+  const TripletBatch b = source.read(2);
+  const Scene scene = sample_scene(rooms, kLens.half_view(), 8, 2);
+  const double turn = scene.cameras[1].yaw;
+  ASSERT_NE(turn, 0);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(b.objects[0][k].yaw, scene.objects[k].yaw(1) - turn);
+}
+
 TEST(RoomSource, FramesAreEvenlyStridedAndAllStridesComeUp) {
   RoomsConfig rooms;
   rooms.camera_step = 0;

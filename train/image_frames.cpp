@@ -16,6 +16,7 @@ ImageFrames::ImageFrames(const std::filesystem::path& path) : path_(path.string(
     else if (count > 1)
       count_ = static_cast<uint64_t>(count);
   });
+  if (!film_ || damage_) source_.reset();
 }
 
 ImageFrames::~ImageFrames() = default;
@@ -27,17 +28,23 @@ bool ImageFrames::is_film() {
     return source_->seek(1) &&
            (movie || (source_->height() == first_->height && source_->width() == first_->width));
   } catch (const Error&) {
-    return movie;  // next() tells what is wrong, after the picture that is right
+    damage_ = std::current_exception();
+    return movie;
   }
 }
 
 std::optional<RgbImage> ImageFrames::next() {
   if (first_) return std::exchange(first_, std::nullopt);
-  if (!film_) return std::nullopt;
+  if (damage_ && film_) std::rethrow_exception(std::exchange(damage_, nullptr));
+  if (!source_) return std::nullopt;
   return guarded(path_, [&]() -> std::optional<RgbImage> {
-    if (!source_->seek(index_)) return std::nullopt;
+    // Whoever asks the library for more after an end or damage gets nonsense.
+    std::unique_ptr<ImageSource> source = std::move(source_);
+    if (index_ > 1 && !source->seek(index_)) return std::nullopt;
     ++index_;
-    return source_->read_rgb();
+    RgbImage image = source->read_rgb();
+    source_ = std::move(source);
+    return image;
   });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -28,16 +29,17 @@ class ImageFrames {
   /// Of pictures, as the file says it without being read; none where it does not.
   std::optional<uint64_t> count() const { return count_; }
 
-  /// None after the last.
+  /// None after the last, or after an Error.
   std::optional<RgbImage> next();
 
  private:
   bool is_film();
 
   std::string path_;
-  std::unique_ptr<ImageSource> source_;
+  std::unique_ptr<ImageSource> source_;  ///< null where nothing more comes
   std::optional<RgbImage> first_;
   bool film_ = false;
+  std::exception_ptr damage_;  ///< found behind the first picture
   std::optional<uint64_t> count_;
   int index_ = 1;  ///< of the picture after the first that comes next
 };

@@ -20,6 +20,7 @@ struct Percepts {
   std::vector<float> location;  ///< (B, K, 3), camera frame; empty without objects
   std::vector<float> log_pose;  ///< (B, K, bins); empty without objects or yaw
   std::vector<float> rotation;  ///< (B, K, 3, 3), object to camera; empty without objects or Euler angles
+  std::vector<float> code;      ///< (B, K, code); empty without objects
 };
 
 struct PerceptionOptions {

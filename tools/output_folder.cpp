@@ -17,10 +17,13 @@ OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) 
 }
 
 std::string OutputFolder::name_for(const std::filesystem::path& input) {
-  const std::string stem = input.stem().string();
-  std::string name = stem;
-  for (int number = 2; !names_.insert(name).second; ++number) name = fmt::format("{}-{}", stem, number);
-  return name;
+  return unique_name(input.stem().string());
+}
+
+std::string OutputFolder::unique_name(const std::string& name) {
+  std::string unique = name;
+  for (int number = 2; !names_.insert(unique).second; ++number) unique = fmt::format("{}-{}", name, number);
+  return unique;
 }
 
 }  // namespace vkopple

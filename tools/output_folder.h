@@ -18,6 +18,8 @@ class OutputFolder {
   /// What the results of an input file are called: its name without the extension, with a number behind it
   /// where that was given to another input before.
   std::string name_for(const std::filesystem::path& input);
+  /// A name with a number behind it where it was given before.
+  std::string unique_name(const std::string& name);
 
  private:
   std::filesystem::path path_;

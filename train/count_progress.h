@@ -21,6 +21,8 @@ class CountProgress {
   CountProgress& operator=(const CountProgress&) = delete;
 
   void show(uint64_t done);
+  /// Where it turns out that there is more to do; 0: nobody knows how much.
+  void set_total(uint64_t total) { total_ = total; }
   /// Before anything else is written to standard error.
   void clear() { line_.clear(); }
 

@@ -139,7 +139,7 @@ std::vector<NamedScore> EvaluationScores::named() const {
 
 std::string score_table(const std::vector<ScoreColumn>& columns) {
   std::string text;
-  const auto add_row = [&](const char* name, const auto& cell) {
+  const auto add_row = [&](const std::string& name, const auto& cell) {
     text += fmt::format("{:<28}", name);
     for (const ScoreColumn& column : columns)
       text += fmt::format("{:>{}}", cell(column), std::max<std::size_t>(8, column.title.size() + 2));

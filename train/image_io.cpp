@@ -1,158 +1,23 @@
 #include "train/image_io.h"
 
-// OpenImageIO's headers bring their own copy of fmt, set up differently from ours: no fmt in this file.
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
-#include <string_view>
 
 #include "runtime/error.h"
 #include "train/atomic_file.h"
-#include "train/png_check.h"
+#include "train/image_source.h"
 #include "train/quote.h"
 
 namespace vkopple {
 namespace {
 
 namespace fs = std::filesystem;
-using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
-constexpr int kMaxChannels = 1024;
-constexpr std::size_t kMaxPngBytes = std::size_t{1} << 30;
-constexpr const char* kStrange = "not a picture of a known format, or a damaged one: ";
 constexpr const char* kNoDate = "1970:01:01 00:00:00";  // else the library writes the current time
-
-[[noreturn]] void fail_reading(const std::string& source, const std::string& reason) {
-  throw Error("cannot read " + quote(source, 4096) + ": " + one_line(reason));
-}
-
-std::string size_text(int height, int width) { return std::to_string(width) + "x" + std::to_string(height); }
-
-/// An open picture whose size has been checked.
-class Input {
- public:
-  explicit Input(const fs::path& path) : source_(path.string()) {
-    image_ = ImageInput::open(source_, &wishes());
-    check();
-  }
-  /// `bytes` must outlive this object.
-  Input(std::span<const std::byte> bytes, const char* format, std::string source)
-      : source_(std::move(source)),
-        memory_(std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size())) {
-    if (std::string_view(format) == "png") {
-      if (const std::string fault = png_fault(bytes); !fault.empty()) fail(fault);
-    }
-    image_ = ImageInput::create(format);
-    ImageSpec ignored;
-    if (image_ && (!image_->set_ioproxy(memory_.get()) || !image_->open(source_, ignored, wishes()))) {
-      fail(kStrange + image_->geterror());
-    }
-    check();
-  }
-
-  int height() const { return image_->spec().height; }
-  int width() const { return image_->spec().width; }
-  std::size_t pixels() const { return static_cast<std::size_t>(height()) * static_cast<std::size_t>(width()); }
-  const ImageSpec& spec() const { return image_->spec(); }
-  const std::string& source() const { return source_; }
-
-  /// Channels from `begin` to before `end`, interleaved.
-  template <class T>
-  std::vector<T> read(int begin, int end, TypeDesc type) {
-    std::vector<T> values(pixels() * static_cast<std::size_t>(end - begin));
-    // Some decoders fill up what is missing, leave a message and call it a success.
-    if (!image_->read_image(0, 0, begin, end, type, values.data()) || image_->has_error()) {
-      const std::string why = image_->geterror();
-      fail("its pixels are damaged or cut off" + (why.empty() ? why : ": " + why));
-    }
-    return values;
-  }
-
-  /// One channel by name, which must be stored with this type. No pixels where there is none.
-  template <class T>
-  Plane<T> read_channel(const std::string& name, TypeDesc type) {
-    const int channel = spec().channelindex(name);
-    if (channel < 0) return {};
-    if (spec().channelformat(channel) != type) fail("its channel " + name + " is not of type " + type.c_str());
-    Plane<T> plane;
-    plane.height = height();
-    plane.width = width();
-    plane.pixels = read<T>(channel, channel + 1, type);
-    return plane;
-  }
-
-  [[noreturn]] void fail(const std::string& reason) const { fail_reading(source_, reason); }
-
- private:
-  static const ImageSpec& wishes() {
-    static const ImageSpec kWishes = [] {
-      ImageSpec spec;
-      spec["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
-      return spec;
-    }();
-    return kWishes;
-  }
-
-  void check() const {
-    if (!image_) fail(kStrange + OIIO::geterror());
-    const ImageSpec& s = spec();
-    if (s.deep || s.depth > 1) fail("deep and volume images can't be used");
-    if (s.width < 1 || s.height < 1 || s.nchannels < 1 || s.nchannels > kMaxChannels)
-      fail("it has no usable pixels");
-    if (s.width > kLargestSide || s.height > kLargestSide || std::int64_t{s.width} * s.height > kMostPixels) {
-      fail(size_text(s.height, s.width) + " pixels are too many; make it smaller, at most " +
-           std::to_string(kLargestSide) + " a side and " + std::to_string(kMostPixels) + " in all");
-    }
-  }
-
-  std::string source_;
-  std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
-  std::unique_ptr<ImageInput> image_;  // after the memory it reads from
-};
-
-/// The library answers most damage with a message, but some of its decoders throw.
-template <class Read>
-auto guarded(const std::string& source, Read&& read) {
-  try {
-    return read();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& problem) {
-    fail_reading(source, problem.what());
-  }
-}
-
-/// Also tells a missing file from a strange one, which the library's messages do not.
-bool starts_as_png(const fs::path& path) {
-  const FileDescriptor file = open_for_reading(path);
-  std::array<std::byte, 8> start{};
-  return ::read(file.get(), start.data(), start.size()) == 8 && looks_like_png(start);
-}
-
-RgbImage to_rgb(Input& input) {
-  const bool grey = input.spec().nchannels < 3;
-  const std::size_t channels = grey ? 1 : 3, pixels = input.pixels();
-  const auto values = input.read<float>(0, static_cast<int>(channels), TypeDesc::FLOAT);
-  RgbImage image(input.height(), input.width());
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const float value = values[i * channels + (grey ? 0 : c)];
-      if (std::isnan(value)) input.fail("it has a pixel that is not a number");
-      image.pixels[c * pixels + i] = std::clamp(value, 0.0f, 1.0f);
-    }
-  }
-  return image;
-}
 
 std::vector<std::byte> encode(const char* format, ImageSpec& spec, TypeDesc type, const void* pixels) {
   spec.attribute("DateTime", kNoDate);
@@ -200,25 +65,23 @@ std::vector<std::byte> encode_ids_exr(const Plane<std::uint32_t>& ids) {
 
 RgbImage read_rgb(const fs::path& path) {
   return guarded(path.string(), [&] {
-    std::vector<std::byte> png;
-    if (starts_as_png(path)) png = read_file(path, kMaxPngBytes);
-    Input input = png.empty() ? Input(path) : Input(png, "png", path.string());
-    return to_rgb(input);
+    ImageSource input(path);
+    return input.read_rgb();
   });
 }
 
 RgbImage decode_png(std::span<const std::byte> bytes, const std::string& source) {
   return guarded(source, [&] {
-    Input input(bytes, "png", source);
-    return to_rgb(input);
+    ImageSource input(bytes, "png", source);
+    return input.read_rgb();
   });
 }
 
 RgbImage decode_rgb(std::span<const std::byte> bytes, const std::string& source) {
   const bool jpeg = bytes.size() > 2 && bytes[0] == std::byte{0xff} && bytes[1] == std::byte{0xd8};
   return guarded(source, [&] {
-    Input input(bytes, jpeg ? "jpeg" : "png", source);
-    return to_rgb(input);
+    ImageSource input(bytes, jpeg ? "jpeg" : "png", source);
+    return input.read_rgb();
   });
 }
 
@@ -226,7 +89,7 @@ template <class T>
 Plane<T> decode_grey(std::span<const std::byte> bytes, const std::string& source) {
   constexpr TypeDesc kType = sizeof(T) == 1 ? TypeDesc::UINT8 : TypeDesc::UINT16;
   return guarded(source, [&] {
-    Input input(bytes, "png", source);
+    ImageSource input(bytes, "png", source);
     if (input.spec().nchannels != 1 || input.spec().format != kType)
       input.fail("it must have one channel of " + std::to_string(8 * sizeof(T)) + " bits");
     Plane<T> plane(input.height(), input.width());
@@ -283,7 +146,7 @@ std::vector<std::byte> encode_exr(const DepthAndIds& layers) {
 
 DepthAndIds decode_exr(std::span<const std::byte> bytes, const std::string& source) {
   return guarded(source, [&] {
-    Input input(bytes, "exr", source);
+    ImageSource input(bytes, "exr", source);
     DepthAndIds layers;
     layers.depth = input.read_channel<float>("Z", TypeDesc::FLOAT);
     layers.ids = input.read_channel<std::uint32_t>("objectId", TypeDesc::UINT32);

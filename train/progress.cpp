@@ -20,14 +20,15 @@ std::string duration_text(double seconds) {
   return fmt::format("{}:{:02}", minutes, rest);
 }
 
-std::string progress_line(const StepRecord& record, uint64_t total, double seconds_per_step) {
-  std::string line = fmt::format("{}/{} {}", record.step, total, record.stage);
+std::string progress_line(const StepRecord& record, uint64_t total, double seconds_per_step,
+                          const Colours& colours) {
+  std::string line = fmt::format("{}/{} {}", record.step, total, colours.stage(record.stage));
   if (const auto found = record.losses.find("total"); found != record.losses.end())
     line += fmt::format("  total {:.4g}", found->second);
   for (const auto& [name, value] : record.losses)
     if (name != "total") line += fmt::format("  {} {:.4g}", name, value);
   const auto add_known = [&](const char* name, const std::optional<double>& score) {
-    if (score) line += fmt::format("  {} {:.3f}", name, *score);
+    if (score) line += "  " + colours.score(fmt::format("{} {:.3f}", name, *score));
   };
   if (record.held_out) {
     add_known("ARI-fg", record.held_out->ari_fg);
@@ -56,7 +57,7 @@ void Progress::show(const StepRecord& record) {
 
   StepRecord shown = record;
   shown.held_out = held_out_;
-  line_.show(progress_line(shown, total_, seconds_per_step_), !begun_ || record.step == total_);
+  line_.show(progress_line(shown, total_, seconds_per_step_, colours_), !begun_ || record.step == total_);
   begun_ = true;
 }
 

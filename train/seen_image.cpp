@@ -43,7 +43,7 @@ void count_shares(SeenImage& seen) {
     seen.objects[k].share = share_of(seen.mask, static_cast<std::uint32_t>(k));
 }
 
-void add_objects(SeenImage& seen, const Percepts& percepts) {
+void add_objects(SeenImage& seen, const Percepts& percepts, size_t identity_numbers) {
   const auto indices = mask_indices(percepts.masks, static_cast<int64_t>(seen.background) + 1);
   std::copy(indices.begin(), indices.end(), seen.mask.pixels.begin());
   const size_t slots = seen.background;
@@ -51,9 +51,12 @@ void add_objects(SeenImage& seen, const Percepts& percepts) {
     const size_t each = values.size() / slots;
     return std::span(values).subspan(each * k, each);
   };
-  for (size_t k = 0; k < slots; ++k)
+  for (size_t k = 0; k < slots; ++k) {
     seen.objects.push_back(
         object(of_slot(percepts.location, k), of_slot(percepts.log_pose, k), of_slot(percepts.rotation, k)));
+    const auto code = of_slot(percepts.code, k).first(identity_numbers);
+    seen.objects.back().identity.assign(code.begin(), code.end());
+  }
   count_shares(seen);
 }
 
@@ -61,14 +64,14 @@ void add_objects(SeenImage& seen, const Percepts& percepts) {
 
 SeenImage see_image(Perception& model, const RgbImage& image) {
   const Percepts percepts = model.see(image.pixels);
-  for (const auto* values :
-       {&percepts.depth, &percepts.masks, &percepts.location, &percepts.log_pose, &percepts.rotation})
+  for (const auto* values : {&percepts.depth, &percepts.masks, &percepts.location, &percepts.log_pose,
+                             &percepts.rotation, &percepts.code})
     require_numbers(*values);
   SeenImage seen{{image.height, image.width}, {image.height, image.width}, {}};
   seen.background = static_cast<std::uint32_t>(model.config().slots);
   seen.depth.pixels = percepts.depth;
   std::fill(seen.mask.pixels.begin(), seen.mask.pixels.end(), seen.background);
-  if (!percepts.masks.empty()) add_objects(seen, percepts);
+  if (!percepts.masks.empty()) add_objects(seen, percepts, static_cast<size_t>(model.config().identity));
   seen.soft_masks = percepts.masks;
   return seen;
 }

@@ -20,6 +20,7 @@ struct SeenObject {
   double yaw_probability = 0;                     ///< of that bin
   std::vector<double> pose;                       ///< probability of every bin of yaw
   std::optional<std::array<double, 9>> rotation;  ///< instead of a yaw: object to camera, row by row
+  std::vector<float> identity;                    ///< numbers by which models/identities.h tells who it is
   double share = 0;                               ///< of the picture's pixels, from 0 to 1
 };
 

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
-#include <unistd.h>
+
+#include "train/colours.h"
 
 namespace vkopple {
 namespace {
@@ -16,12 +17,34 @@ size_t columns(std::FILE* stream) {
   return size.ws_col;
 }
 
+/// Bytes of the escape sequence for a colour that `text` begins with, 0 where there is none.
+size_t colour_bytes(std::string_view text) {
+  if (!text.starts_with("\033[")) return 0;
+  const size_t end = text.find('m');
+  return end == std::string_view::npos ? 0 : end + 1;
+}
+
 }  // namespace
+
+std::string cut_to_columns(std::string_view line, size_t columns) {
+  size_t taken = 0;
+  bool colours = false;
+  for (size_t used = 0; taken < line.size();) {
+    if (const size_t bytes = colour_bytes(line.substr(taken)); bytes > 0) {
+      colours = true;
+      taken += bytes;
+      continue;
+    }
+    if (++used > columns) break;
+    ++taken;
+  }
+  return std::string(line.substr(0, taken)) + (colours && taken < line.size() ? "\033[0m" : "");
+}
 
 StatusLine::StatusLine(std::FILE* stream, bool terminal)
     : stream_(stream), terminal_(terminal), shown_(std::chrono::steady_clock::now()) {}
 
-StatusLine::StatusLine() : StatusLine(stderr, ::isatty(STDERR_FILENO) == 1) {}
+StatusLine::StatusLine() : StatusLine(stderr, is_terminal(stderr)) {}
 
 StatusLine::~StatusLine() {
   if (open_) fmt::print(stream_, "\n");
@@ -32,7 +55,7 @@ void StatusLine::show(std::string_view text, bool now) {
   if (!terminal_ && !now && time - shown_ < kBetweenLines) return;
   shown_ = time;
   if (terminal_)
-    fmt::print(stream_, "\r{}\033[K", text.substr(0, columns(stream_) - 1));
+    fmt::print(stream_, "\r{}\033[K", cut_to_columns(text, columns(stream_) - 1));
   else
     fmt::print(stream_, "{}\n", text);
   open_ = terminal_;

@@ -2,9 +2,14 @@
 
 #include <chrono>
 #include <cstdio>
+#include <string>
 #include <string_view>
 
 namespace vkopple {
+
+/// As much of a line of ASCII as takes so many columns of a terminal, of which colours take none. They end with
+/// it.
+std::string cut_to_columns(std::string_view line, size_t columns);
 
 /// A line that tells how work goes: rewritten in place on a terminal, elsewhere a line every ten seconds.
 class StatusLine {

@@ -184,7 +184,7 @@ void Trainer::save_if_due() {
   if (numbered || seconds_since(saved_at_) >= options_.seconds_between_saves) save(numbered);
 }
 
-bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
+bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop) {
   std::optional<Diary> diary;  // only once all that it needs is there
   bool stopped = false;
   while (position_.step < plan_.steps() && !stopped) {
@@ -195,9 +195,9 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
       if (!diary)
         diary.emplace(Diary{.log = TrainingLog(options_.folder.log(), position_.step),
                             .board = TrainingBoard(options_.folder.path(), position_.step)});
-      progress.say(stage_text(planned));
+      listener.say(stage_text(planned));
       if (device_->caps().cpu())
-        progress.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
+        listener.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
     }
     while (position_.step < planned.end && !stopped) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
@@ -209,7 +209,7 @@ bool Trainer::run(Progress& progress, const std::function<bool()>& stop) {
           measure(stage, *diary, record);
           diary->log.add(record);
           diary->board.add(record);
-          progress.show(record);
+          listener.show(record);
         }
         save_if_due();
       }

@@ -15,9 +15,9 @@
 #include "train/data/triplets.h"
 #include "train/model_store.h"
 #include "train/profiler.h"
-#include "train/progress.h"
 #include "train/run_folder.h"
 #include "train/stage_plan.h"
+#include "train/training_listener.h"
 #include "train/training_log.h"
 
 namespace vkopple {
@@ -53,7 +53,7 @@ class Trainer {
 
   /// Trains until the plan's end, or until `stop` says so after a step, and saves. Whether it came to the end.
   /// On failure the checkpoints written before stay.
-  bool run(Progress& progress, const std::function<bool()>& stop);
+  bool run(TrainingListener& listener, const std::function<bool()>& stop);
 
   const TrainingPosition& position() const { return position_; }
   const StagePlan& plan() const { return plan_; }

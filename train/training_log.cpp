@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 
@@ -33,17 +32,7 @@ uint64_t bytes_to_keep(const std::filesystem::path& path, uint64_t step) {
 
 }  // namespace
 
-TrainingLog::TrainingLog(std::filesystem::path path, uint64_t step) : path_(std::move(path)) {
-  if (std::filesystem::exists(path_)) {
-    std::error_code failure;
-    std::filesystem::resize_file(path_, bytes_to_keep(path_, step), failure);
-    if (failure) throw Error(fmt::format("{}: cannot be shortened: {}", path_.string(), failure.message()));
-  }
-  file_.open(path_, std::ios::binary | std::ios::app);
-  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
-}
-
-void TrainingLog::add(const StepRecord& record) {
+nlohmann::ordered_json to_json(const StepRecord& record) {
   nlohmann::ordered_json json{{"step", record.step},
                               {"stage", record.stage},
                               {"losses", record.losses},
@@ -62,7 +51,21 @@ void TrainingLog::add(const StepRecord& record) {
     json["exchange_seconds"] = record.shared->exchange_seconds;
     json["efficiency"] = record.shared->efficiency;
   }
-  file_ << json.dump() << '\n' << std::flush;
+  return json;
+}
+
+TrainingLog::TrainingLog(std::filesystem::path path, uint64_t step) : path_(std::move(path)) {
+  if (std::filesystem::exists(path_)) {
+    std::error_code failure;
+    std::filesystem::resize_file(path_, bytes_to_keep(path_, step), failure);
+    if (failure) throw Error(fmt::format("{}: cannot be shortened: {}", path_.string(), failure.message()));
+  }
+  file_.open(path_, std::ios::binary | std::ios::app);
+  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
+}
+
+void TrainingLog::add(const StepRecord& record) {
+  file_ << to_json(record).dump() << '\n' << std::flush;
   if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
 }
 

@@ -3,14 +3,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "train/step_record.h"
 
 namespace vkopple {
 
-/// The log of a run: a JSON object a line and step, {"step", "stage", "losses": {...}, "seconds",
-/// "data_seconds"}, of "ari_fg", "iou" and "depth_r" what was measured, and "processes", "exchange_seconds",
-/// "efficiency" where there are several processes. Throws Error naming the file.
+/// {"step", "stage", "losses": {...}, "seconds", "data_seconds"}, of "ari_fg", "iou" and "depth_r" what was
+/// measured, and "processes", "exchange_seconds", "efficiency" where there are several processes.
+nlohmann::ordered_json to_json(const StepRecord& record);
+
+/// The log of a run: such an object a line and step. Throws Error naming the file.
 class TrainingLog {
  public:
   /// Opens it to go on after `step` steps: what it holds from the first line on that belongs to a later step,

@@ -56,9 +56,9 @@ int wait_for(pid_t process) {
 
 int Outcome::lines() const { return static_cast<int>(std::count(errors.begin(), errors.end(), '\n')); }
 
-Outcome run_vkopple(const std::vector<std::string>& arguments) {
+Outcome run_vkopple(const std::vector<std::string>& arguments, const std::filesystem::path& output) {
   const TempFolder folder;
-  const Redirection redirection(folder / "output", folder / "errors");
+  const Redirection redirection(output.empty() ? folder / "output" : output, folder / "errors");
   std::vector<std::string> words{VKOPPLE_BINARY};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

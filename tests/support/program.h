@@ -16,8 +16,8 @@ struct Outcome {
 };
 
 /// Runs the vkopple that was built with these arguments, in the current folder, and waits. On the device that
-/// tests use, with a pipeline cache of the tests.
-Outcome run_vkopple(const std::vector<std::string>& arguments);
+/// tests use, with a pipeline cache of the tests. `output`: where standard output goes instead of the outcome.
+Outcome run_vkopple(const std::vector<std::string>& arguments, const std::filesystem::path& output = {});
 
 /// Expects that the program failed with `code` and one line on standard error that holds each of `parts`.
 void expect_failure(const Outcome& outcome, int code, const std::vector<std::string>& parts);

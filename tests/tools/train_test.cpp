@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/program.h"
 #include "tests/support/temp_folder.h"
@@ -68,6 +69,54 @@ TEST_F(TrainCommand, TrainsAndGoesOn) {
   const auto third = train({"--out", out(), "--resume", "--steps", "2"});
   expect_success(third);
   EXPECT_NE(third.errors.find("has its 2 steps already"), std::string::npos) << third.errors;
+}
+
+TEST_F(TrainCommand, IsQuietWhereAsked) {
+  const auto outcome = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "2", "--batch", "2",
+                              "--eval-every", "0", "--quiet"});
+  expect_success(outcome);
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_EQ(outcome.output, "");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "latest.safetensors"));
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--quiet"}), 2, {"--resume"});
+}
+
+TEST_F(TrainCommand, PrintsItsLogAndItsEndAsJson) {
+  const auto outcome = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "2", "--batch", "2",
+                              "--eval-every", "2", "--json"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.errors.find("done after step 2"), std::string::npos) << outcome.errors;
+  const std::string log = read_text_file(folder_ / "run" / "log.jsonl", size_t{1} << 20);
+  ASSERT_TRUE(outcome.output.starts_with(log)) << outcome.output << "\n and log:\n" << log;
+  EXPECT_NE(log.find("depth_r"), std::string::npos);
+  EXPECT_EQ(
+      nlohmann::json::parse(outcome.output.substr(log.size())),
+      (nlohmann::json{
+          {"outcome", "complete"}, {"step", 2}, {"steps", 2}, {"checkpoint", out() + "/latest.safetensors"}}));
+  const auto nothing_left = train({"--out", out(), "--resume", "--steps", "2", "--quiet", "--json"});
+  expect_success(nothing_left);
+  EXPECT_EQ(nlohmann::json::parse(nothing_left.output).at("outcome"), "complete");
+  EXPECT_EQ(nothing_left.errors, "");
+}
+
+TEST_F(TrainCommand, PrintsWhyItFailedAsJson) {
+  const auto outcome =
+      train({config(), "--data", folder_ / "absent", "--out", out(), "--steps", "9", "--quiet", "--json"});
+  expect_failure(outcome, 1, {"absent"});
+  const auto json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json.at("outcome"), "failed");
+  EXPECT_EQ(json.at("step"), 0);
+  EXPECT_EQ(json.at("steps"), 9);
+  EXPECT_EQ("vkopple: " + json.at("error").get<std::string>() + "\n", outcome.errors);
+  EXPECT_FALSE(json.contains("checkpoint"));
+}
+
+TEST_F(TrainCommand, SavesWhereItsOutputCannotBeWritten) {
+  const auto outcome = run_vkopple({"train", config(), "--data", "rooms:1", "--out", out(), "--steps", "9",
+                                    "--batch", "2", "--eval-every", "0", "--quiet", "--json"},
+                                   "/dev/full");
+  expect_failure(outcome, 1, {"standard output", "after step 1", out(), "--resume"});
+  EXPECT_EQ(read_checkpoint_header(folder_ / "run" / "latest.safetensors").position.step, 1U);
 }
 
 TEST_F(TrainCommand, SetsValuesOfTheConfiguration) {

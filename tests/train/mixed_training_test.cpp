@@ -15,6 +15,7 @@
 #include "train/atomic_file.h"
 #include "train/checkpoint.h"
 #include "train/data/open_source.h"
+#include "train/progress.h"
 #include "train/safetensors.h"
 #include "train/step_batch.h"
 #include "train/trainer.h"

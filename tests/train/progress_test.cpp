@@ -38,6 +38,21 @@ TEST(Progress, ALineTellsAll) {
             "100/100 all  total 0.25  image 0.5  ARI-fg 0.125  depth r 0.500  2 triplets/s  0:00 left");
 }
 
+TEST(Progress, StageAndScoresMayHaveColours) {
+  StepRecord measured = record(100);
+  measured.held_out = {.ari_fg = {}, .iou = 0.25, .depth_r = 0.5};
+  EXPECT_EQ(progress_line(measured, 100, 2, Colours(true)),
+            "100/100 \033[36mall\033[0m  total 0.25  image 0.5  \033[32mIoU 0.250\033[0m  \033[32mdepth r "
+            "0.500\033[0m"
+            "  2 triplets/s  0:00 left");
+  const std::unique_ptr<std::FILE, Close> file(std::tmpfile());
+  ASSERT_TRUE(file);
+  Progress(file.get(), false, 100).show(measured);
+  EXPECT_EQ(text_of(file.get()).find("\033[3"), std::string::npos);
+  Progress(file.get(), true, 100, Colours(true)).show(measured);
+  EXPECT_NE(text_of(file.get()).find("\033[36mall"), std::string::npos);
+}
+
 TEST(Progress, ATerminalsLineIsRewritten) {
   const std::unique_ptr<std::FILE, Close> file(std::tmpfile());
   ASSERT_TRUE(file);

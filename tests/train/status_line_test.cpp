@@ -31,6 +31,17 @@ TEST(StatusLine, WithoutATerminalOnlyWhatIsDue) {
   EXPECT_EQ(text_of(file), "asked for\nstays\n");
 }
 
+TEST(StatusLine, ColoursTakeNoColumns) {
+  const std::string line = "ab\033[36mcd\033[0mef";
+  EXPECT_EQ(cut_to_columns(line, 6), line);
+  EXPECT_EQ(cut_to_columns(line, 9), line);
+  EXPECT_EQ(cut_to_columns(line, 3), "ab\033[36mc\033[0m");
+  EXPECT_EQ(cut_to_columns(line, 5), "ab\033[36mcd\033[0me\033[0m");
+  EXPECT_EQ(cut_to_columns(line, 1), "a");
+  EXPECT_EQ(cut_to_columns("\033[36", 2), "\033[") << "no colour";
+  EXPECT_EQ(cut_to_columns("", 2), "");
+}
+
 TEST(StatusLine, OnATerminalItGoesAway) {
   const File file(std::tmpfile());
   ASSERT_TRUE(file);

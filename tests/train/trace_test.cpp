@@ -13,6 +13,7 @@
 #include "tests/support/test_device.h"
 #include "tests/support/tiny_model.h"
 #include "train/json_io.h"
+#include "train/progress.h"
 #include "train/trainer.h"
 
 namespace vkopple {

@@ -1,4 +1,5 @@
 #include "train/trainer.h"
+#include "train/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -9,6 +9,7 @@
 #include "tests/support/test_device.h"
 #include "train/checkpoint.h"
 #include "train/model_store.h"
+#include "train/progress.h"
 #include "train/seen_image.h"
 #include "train/trainer.h"
 

@@ -15,11 +15,11 @@
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
 #include "tools/set_option.h"
+#include "tools/train_output.h"
 #include "train/checkpoint.h"
 #include "train/interrupt.h"
 #include "train/parallel/join.h"
 #include "train/parallel/own_device.h"
-#include "train/progress.h"
 #include "train/run_folder.h"
 #include "train/trainer.h"
 #include "train/tuning_file.h"
@@ -45,6 +45,7 @@ struct Options {
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   int data_threads = TrainerOptions{RunFolder("")}.data_threads;
   bool resume = false;
+  TrainOutput::Choice output;
   bool sync_batch_norm = false;
   WinogradUse winograd = WinogradUse::kWhereFaster;
 };
@@ -99,6 +100,45 @@ Request resumed_run(const Options& o, TrainerOptions trainer) {
   return request;
 }
 
+/// Trains and tells what became of the run.
+void run_to_end(const Options& o, const Interrupt& interrupt, Trainer& trainer, bool leads) {
+  TrainOutput output(o.output, trainer.plan().steps());
+  const std::string latest = RunFolder(o.out).latest().string();
+  const uint64_t begin = trainer.position().step;
+  const auto end = [&](const char* outcome, const std::string& error = {}) {
+    if (!leads) return;
+    nlohmann::ordered_json json{
+        {"outcome", outcome}, {"step", trainer.position().step}, {"steps", trainer.plan().steps()}};
+    if (error.empty())
+      json["checkpoint"] = latest;
+    else
+      json["error"] = error;
+    output.end(json);
+  };
+  bool complete = false;
+  try {
+    complete = trainer.run(output, [&] { return interrupt.requested() || !output.fault().empty(); });
+  } catch (const std::exception& error) {
+    end("failed", error.what());
+    throw;
+  }
+  if (!leads) return;
+  const uint64_t step = trainer.position().step;
+  end(complete ? "complete" : "stopped");
+  if (!output.fault().empty())
+    throw Error(
+        fmt::format("standard output cannot be written: {}; saved after step {} in {}, go on with --resume",
+                    output.fault(), step, latest));
+  if (!complete)
+    output.say(
+        fmt::format("stopped after {} of {} steps, saved in {}; go on with the same command and --resume", step,
+                    trainer.plan().steps(), latest));
+  else if (step == begin)
+    output.say(fmt::format("{} has its {} steps already; give more with --steps", o.out, step));
+  else
+    output.say(fmt::format("done after step {}, saved in {}", step, latest));
+}
+
 /// `peers` may be null.
 void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
   TrainerOptions trainer_options{.folder = RunFolder(o.out)};
@@ -118,20 +158,7 @@ void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
                        .kernels = o.kernels,
                        .tuned = load_tuned_choices});
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
-  Progress progress(trainer.plan().steps());
-  const uint64_t begin = trainer.position().step;
-  const bool complete = trainer.run(progress, [&] { return interrupt.requested(); });
-  if (peers != nullptr && peers->rank() != 0) return;
-  const uint64_t step = trainer.position().step;
-  const std::string latest = RunFolder(o.out).latest().string();
-  if (!complete)
-    progress.say(
-        fmt::format("stopped after {} of {} steps, saved in {}; go on with the same command and --resume", step,
-                    trainer.plan().steps(), latest));
-  else if (step == begin)
-    progress.say(fmt::format("{} has its {} steps already; give more with --steps", o.out, step));
-  else
-    progress.say(fmt::format("done after step {}, saved in {}", step, latest));
+  run_to_end(o, interrupt, trainer, peers == nullptr || peers->rank() == 0);
 }
 
 /// Where one of several processes fails, the others would wait for it for ever.
@@ -205,6 +232,10 @@ void add_train(CLI::App& app) {
       "and so far the only way there is");
   command->add_flag("--sync-batch-norm", o->sync_batch_norm,
                     "Under mpirun: batch norms take their statistics over the batches of all processes");
+  command->add_flag("--quiet", o->output.quiet, "Say nothing but errors and warnings");
+  command->add_flag(
+      "--json", o->output.json,
+      "Print JSON, an object a line: what log.jsonl gets of every step, then what became of the run");
   add_winograd_option(*command, o->winograd);
   add_precision_option(*command, o->precision, "what the configuration says, float32 where it says nothing");
   add_device_option(*command, o->device);
@@ -213,6 +244,7 @@ void add_train(CLI::App& app) {
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
       "          vkopple train --out run --steps 10000 --resume\n"
       "          vkopple train small --set training.stages=[] --weights run --data rooms:2 --out other\n"
+      "          vkopple train small --data rooms:1 --out run --quiet --json | jq .losses.total\n"
       "          mpirun -n 4 vkopple train full --data rooms:1 --out run");
   command->callback([o] { run(*o); });
 }

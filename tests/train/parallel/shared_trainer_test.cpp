@@ -11,6 +11,7 @@
 #include "tests/support/threaded_peers.h"
 #include "tests/support/tiny_model.h"
 #include "train/atomic_file.h"
+#include "train/progress.h"
 #include "train/trainer.h"
 
 namespace vkopple {

@@ -1,0 +1,83 @@
+#include "train/colours.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace vkopple {
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+/// Sets a variable for as long as it lives; null: takes it away.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  ~Variable() { set(before_ ? before_->c_str() : nullptr); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  void set(const char* value) const {
+    if (value == nullptr)
+      ::unsetenv(name_);
+    else
+      ::setenv(name_, value, 1);
+  }
+
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+/// The side of a new terminal that programs write to, and the other.
+struct Terminal {
+  File keyboard{::fdopen(::posix_openpt(O_RDWR | O_NOCTTY), "r+")};
+  File screen;
+
+  Terminal() {
+    if (!keyboard || ::grantpt(::fileno(keyboard.get())) != 0 || ::unlockpt(::fileno(keyboard.get())) != 0)
+      return;
+    screen.reset(std::fopen(::ptsname(::fileno(keyboard.get())), "w"));
+  }
+};
+
+TEST(Colours, OnATerminalUnlessRefused) {
+  const Terminal terminal;
+  if (!terminal.screen) GTEST_SKIP() << "no pseudo-terminal can be opened here";
+  const Variable term("TERM", "xterm"), none("NO_COLOR", nullptr);
+  EXPECT_TRUE(may_have_colours(terminal.screen.get()));
+  {
+    const Variable refused("NO_COLOR", "0");
+    EXPECT_FALSE(may_have_colours(terminal.screen.get())) << "any text refuses";
+  }
+  {
+    const Variable empty("NO_COLOR", "");
+    EXPECT_TRUE(may_have_colours(terminal.screen.get()));
+  }
+  const Variable other("TERM", "dumb");
+  EXPECT_FALSE(may_have_colours(terminal.screen.get()));
+  EXPECT_TRUE(is_terminal(terminal.screen.get()));
+}
+
+TEST(Colours, NoneElsewhere) {
+  const Variable term("TERM", "xterm"), none("NO_COLOR", nullptr);
+  const File file(std::tmpfile());
+  ASSERT_TRUE(file);
+  EXPECT_FALSE(may_have_colours(file.get()));
+  EXPECT_EQ(Colours(false).stage("depth"), "depth");
+  EXPECT_EQ(Colours(true).stage("depth"), "\033[36mdepth\033[0m");
+}
+
+}  // namespace
+}  // namespace vkopple

@@ -1,0 +1,118 @@
+#include "train/image_source.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "train/atomic_file.h"
+#include "train/png_check.h"
+#include "train/quote.h"
+
+namespace vkopple {
+namespace {
+
+namespace fs = std::filesystem;
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+constexpr int kMaxChannels = 1024;
+constexpr std::size_t kMaxPngBytes = std::size_t{1} << 30;
+constexpr const char* kStrange = "not a picture of a known format, or a damaged one: ";
+
+const ImageSpec& wishes() {
+  static const ImageSpec kWishes = [] {
+    ImageSpec spec;
+    spec["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+    return spec;
+  }();
+  return kWishes;
+}
+
+/// Also tells a missing file from a strange one, which the library's messages do not.
+bool starts_as_png(const fs::path& path) {
+  const FileDescriptor file = open_for_reading(path);
+  std::array<std::byte, 8> start{};
+  return ::read(file.get(), start.data(), start.size()) == 8 && looks_like_png(start);
+}
+
+}  // namespace
+
+std::string size_text(int height, int width) { return std::to_string(width) + "x" + std::to_string(height); }
+
+void fail_reading(const std::string& source, const std::string& reason) {
+  throw Error("cannot read " + quote(source, 4096) + ": " + one_line(reason));
+}
+
+ImageSource::ImageSource(const fs::path& path) : source_(path.string()) {
+  if (starts_as_png(path)) {
+    png_ = read_file(path, kMaxPngBytes);
+    open(png_, "png");
+  } else {
+    image_ = ImageInput::open(source_, &wishes());
+  }
+  check();
+}
+
+ImageSource::ImageSource(std::span<const std::byte> bytes, const char* format, std::string source)
+    : source_(std::move(source)) {
+  open(bytes, format);
+  check();
+}
+
+void ImageSource::open(std::span<const std::byte> bytes, const char* format) {
+  if (std::string_view(format) == "png") {
+    if (const std::string fault = png_fault(bytes); !fault.empty()) fail(fault);
+  }
+  memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+  image_ = ImageInput::create(format);
+  ImageSpec ignored;
+  if (image_ && (!image_->set_ioproxy(memory_.get()) || !image_->open(source_, ignored, wishes()))) {
+    fail(kStrange + image_->geterror());
+  }
+}
+
+void ImageSource::check() const {
+  if (!image_) fail(kStrange + OIIO::geterror());
+  const ImageSpec& s = spec();
+  if (s.deep || s.depth > 1) fail("deep and volume images can't be used");
+  if (s.width < 1 || s.height < 1 || s.nchannels < 1 || s.nchannels > kMaxChannels)
+    fail("it has no usable pixels");
+  if (s.width > kLargestSide || s.height > kLargestSide || std::int64_t{s.width} * s.height > kMostPixels) {
+    fail(size_text(s.height, s.width) + " pixels are too many; make it smaller, at most " +
+         std::to_string(kLargestSide) + " a side and " + std::to_string(kMostPixels) + " in all");
+  }
+}
+
+bool ImageSource::seek(int index) {
+  if (!image_->seek_subimage(index, 0)) {
+    const std::string why = image_->geterror();
+    // At the end of a TIFF the library repeats the last message about any file.
+    if (why.empty() || format() == "tiff") return false;
+    fail("it is damaged or cut off after " + std::to_string(index) + " images: " + why);
+  }
+  index_ = index;
+  check();
+  return true;
+}
+
+RgbImage ImageSource::read_rgb() {
+  const bool grey = spec().nchannels < 3;
+  const std::size_t channels = grey ? 1 : 3, count = pixels();
+  const auto values = read<float>(0, static_cast<int>(channels), TypeDesc::FLOAT);
+  RgbImage image(height(), width());
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const float value = values[i * channels + (grey ? 0 : c)];
+      if (std::isnan(value)) fail("it has a pixel that is not a number");
+      image.pixels[c * count + i] = std::clamp(value, 0.0f, 1.0f);
+    }
+  }
+  return image;
+}
+
+}  // namespace vkopple

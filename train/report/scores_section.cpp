@@ -21,7 +21,8 @@ NamedScores published() {
 
 std::string number(const std::optional<double>& value) {
   if (!value) return "–";
-  return (*value < 0 ? "−" : "") + fmt::format("{:.3f}", std::abs(*value));
+  const std::string digits = fmt::format("{:.3f}", std::abs(*value));
+  return (*value < 0 && digits != "0.000" ? "−" : "") + digits;
 }
 
 std::string cell(const NamedScores& column, const std::string& name) {

@@ -104,8 +104,9 @@ class Inference {
   Recording new_recording() const { return {.identities = Identities(static_cast<size_t>(config_.identity))}; }
 
   /// Writes what is seen; the JSON comes last, so that where it lies all is complete. `recording`: which the
-  /// image is the next frame of, or null.
-  void show(const std::string& path, const std::string& name, const RgbImage& image, Recording* recording) {
+  /// image is the next frame of, or null. Gives what is to be printed.
+  std::string show(const std::string& path, const std::string& name, const RgbImage& image,
+                   Recording* recording) {
     const RgbImage small = resize(image, config_.height, config_.width);
     const SeenImage seen_small = see_image(perception_, small);
     const SeenImage seen = resize(seen_small, image.height, image.width);
@@ -118,11 +119,9 @@ class Inference {
     json.update(to_json(seen));
     for (size_t k = 0; k < ids.size(); ++k) json["objects"][k]["id"] = id_json(ids[k]);
     write_file(folder_ / (name + ".json"), json.dump(2) + "\n");
-    if (options_.json)
-      all_.push_back(std::move(json));
-    else
-      print(name, seen, ids);
+    if (options_.json) all_.push_back(std::move(json));
     if (!options_.grid.empty() && grid_.size() < kGridRows) add_row(small, seen_small, ids);
+    return options_.json ? std::string() : text(name, seen, ids);
   }
 
   void finish() const {
@@ -145,10 +144,10 @@ class Inference {
     return id ? nlohmann::ordered_json(*id) : nlohmann::ordered_json(nullptr);
   }
 
-  static void print(const std::string& name, const SeenImage& seen, const Ids& ids) {
+  static std::string text(const std::string& name, const SeenImage& seen, const Ids& ids) {
     const auto [nearest, farthest] = std::minmax_element(seen.depth.pixels.begin(), seen.depth.pixels.end());
-    fmt::print("{}: depth from {:.2f} to {:.2f}\n", name, *nearest, *farthest);
-    fmt::print("{}", objects_text(seen.objects, ids));
+    return fmt::format("{}: depth from {:.2f} to {:.2f}\n", name, *nearest, *farthest) +
+           objects_text(seen.objects, ids);
   }
 
   const Options& options_;
@@ -211,7 +210,9 @@ class Viewing {
 
   void show(const std::string& path, const std::string& name, const RgbImage& image,
             std::optional<Recording>& recording) {
-    inference_.show(path, name, image, recording ? &*recording : nullptr);
+    const std::string text = inference_.show(path, name, image, recording ? &*recording : nullptr);
+    if (!text.empty()) progress_.clear();
+    fmt::print("{}", text);
     progress_.show(++shown_);
   }
 

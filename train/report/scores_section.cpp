@@ -67,7 +67,7 @@ std::string scores_section(const Report& report) {
     html += fmt::format("<p class=\"note\">{}</p>\n", escape_html(line));
   html +=
       "<p class=\"quiet\">* The model’s authors, after training on 275 thousand triplets of their own rooms, "
-      "128 × 128 pixels: other images, so an order of magnitude and no contest.</p>\n";
+      "128 × 128 pixels: other images, so a rough guide and no comparison.</p>\n";
   return section_html("scores", "Scores", html);
 }
 

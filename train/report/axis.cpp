@@ -10,6 +10,8 @@ namespace vkopple {
 namespace {
 
 constexpr std::array<double, 3> kRound{1, 2, 5};
+constexpr double kLargest = 1e100,
+                 kLeast = 1e-100;  // beyond which ranges and their powers of ten are no numbers
 constexpr double kManyTimes = 30;  // from which on a logarithmic axis shows more
 constexpr std::size_t kMostLogTicks = 7;
 
@@ -25,8 +27,10 @@ double round_up(double value) {
 
 Axis Axis::linear(double low, double high, int wanted) {
   if (low > high) std::swap(low, high);
-  if (high - low <= 1e-9 * std::max(std::abs(low), std::abs(high)) || low == high) {
-    const double room = low == 0 ? 1 : std::abs(low) / 2;
+  low = std::clamp(low, -kLargest, kLargest);
+  high = std::clamp(high, -kLargest, kLargest);
+  if (high - low <= std::max(1e-9 * std::max(std::abs(low), std::abs(high)), kLeast)) {
+    const double room = std::abs(low) <= kLeast ? 1 : std::abs(low) / 2;
     low -= room;
     high += room;
   }
@@ -47,6 +51,8 @@ Axis Axis::within(double low, double high, int wanted) {
 
 Axis Axis::logarithmic(double low, double high) {
   if (low > high) std::swap(low, high);
+  low = std::clamp(low, kLeast, kLargest);
+  high = std::clamp(high, kLeast, kLargest);
   std::vector<double> ticks, powers;
   for (double power = std::floor(std::log10(low)); power <= std::ceil(std::log10(high)); ++power) {
     powers.push_back(std::pow(10.0, power));
@@ -68,7 +74,7 @@ Axis Axis::fitting(double low, double high) {
 }
 
 double Axis::place(double value) const {
-  if (logarithmic_) return std::log(value / low()) / std::log(high() / low());
+  if (logarithmic_) return std::log(std::max(value, kLeast) / low()) / std::log(high() / low());
   return (value - low()) / (high() - low());
 }
 

@@ -39,7 +39,6 @@ figcaption { font-size: .85rem; line-height: 1.4; max-width: 44rem; }
 svg { display: block; width: 100%; max-width: 26rem; height: auto; }
 svg text { fill: var(--quiet); font: 11px system-ui, sans-serif; font-variant-numeric: tabular-nums; }
 svg .title { fill: var(--ink); }
-svg .frame { fill: none; stroke: var(--rule); }
 svg .guide { stroke: var(--rule); fill: none; }
 svg .dashed { stroke: var(--quiet); stroke-dasharray: 3 3; fill: none; }
 svg .band { fill: var(--band); }

@@ -74,7 +74,7 @@ std::string scores_section(const Report& report) {
       "clusters of colour and place, as many as slots and background; truth: what true masks, depth and places "
       "get.</p>\n"
       "<p class=\"quiet\">* The model’s authors, after training on 275 thousand triplets of their own rooms, "
-      "128 × 128 pixels: other images, so an order of magnitude and no contest.</p>\n";
+      "128 × 128 pixels: other images, so a rough guide and no comparison.</p>\n";
   return section_html("scores", "Scores", html);
 }
 

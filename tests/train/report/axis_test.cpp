@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace vkopple {
 namespace {
 
@@ -47,6 +49,18 @@ TEST(Axis, LogarithmicTicksAreOfEveryPowerThatThereIsRoomFor) {
   EXPECT_THAT(labels(Axis::logarithmic(3.7, 0.02)), ElementsAre("0.01", "0.1", "1", "10"));
   EXPECT_THAT(Axis::logarithmic(1e-5, 1e9).ticks(),
               Pointwise(DoubleEq(), std::vector<double>{1e-5, 1e-2, 1e1, 1e4, 1e7, 1e10}));
+}
+
+TEST(Axis, NumbersBeyondReasonHaveAxesToo) {
+  for (const Axis& axis :
+       {Axis::linear(-1.7e308, 1.7e308), Axis::linear(0, 1e-320), Axis::logarithmic(5e-324, 1),
+        Axis::logarithmic(1e-300, 1e300), Axis::fitting(1e305, 1e305)}) {
+    EXPECT_GE(axis.ticks().size(), 3U);
+    EXPECT_LE(axis.ticks().size(), 9U);
+    EXPECT_TRUE(std::isfinite(axis.place(5e-324)));
+    for (const double tick : axis.ticks()) EXPECT_TRUE(std::isfinite(tick));
+    EXPECT_FALSE(axis.label(axis.low()).empty());
+  }
 }
 
 TEST(Axis, FittingLooksAtTheRange) {

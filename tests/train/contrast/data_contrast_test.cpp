@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "graph/executor.h"
 #include "graph/ops/back_project.h"
 #include "graph/ops/blend.h"

@@ -22,9 +22,8 @@ class Identities {
   /// `numbers`: of an identity code.
   explicit Identities(size_t numbers) : numbers_(numbers) {}
 
-  /// Identities of a frame's slots, counted from 0. codes: (K, numbers). A slot that shows nothing in this
-  /// frame
-  /// (`visible`, of K) has none. Throws Error on another count.
+  /// Identities of a frame's slots, counted from 0; none of a slot that shows nothing (`visible`, of K).
+  /// codes: (K, numbers). Throws Error on another count.
   std::vector<std::optional<size_t>> follow(std::span<const float> codes, const std::vector<bool>& visible);
 
  private:

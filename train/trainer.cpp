@@ -24,9 +24,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kProbeBatch = 16;
-/// Reading all weights takes about as long as a step does on a fast GPU.
+/// All weights and gradients are read for them.
 constexpr uint64_t kNormsEvery = 50;
-/// Measurements between two pictures, which take a hundred times a measurement's bytes.
+/// Measurements between two pictures, which take far more room than numbers.
 constexpr uint64_t kPicturesEvery = 10;
 // Rooms to measure in are never those of training, whose seeds are small numbers as a rule.
 constexpr uint64_t kProbeSeedDistance = 1'000'003;

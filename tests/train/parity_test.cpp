@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "runtime/device.h"
 #include "tests/support/fixture.h"
 #include "tests/support/test_device.h"
 
@@ -31,8 +32,10 @@ TEST(ParityTest, WithoutWarpingAndJensenShannon) { expect_parity(test_device(), 
 
 TEST(ParityTest, Relaxed) { expect_parity(test_device(), "relaxed.safetensors"); }
 
-// The order of plain sums is the device's: on an NVIDIA H200 one gradient is at 1.6 times its limit.
-TEST(ParityTest, EulerAnglesWithPlainSums) { expect_parity(test_device(), "euler.safetensors", 1e-3); }
+// The order of plain sums is the device's: on an NVIDIA H200 one gradient is off by 1.6e-4, of 1e-4.
+TEST(ParityTest, EulerAnglesWithPlainSums) {
+  expect_parity(test_device(), "euler.safetensors", test_device().caps().cpu() ? 0 : 2e-4);
+}
 
 TEST(ParityTest, EulerAnglesWithExactSums) { expect_parity(exact_device(), "euler.safetensors"); }
 

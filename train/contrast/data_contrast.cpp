@@ -128,10 +128,8 @@ std::string DataContrast::to_text() const {
   add_row(fmt::format("where all land, {:.0f} %", 100 * landed_share()), landed());
   return text +
          "ideal: predicted with true masks, depth and motion; flat: with the image's mean depth everywhere; "
-         "still: "
-         "as if\nonly the camera moved. A ratio well above 1: depth (flat), or knowing that objects move "
-         "(still), "
-         "has much of the\nimage loss to win. About 1: nothing.\n";
+         "still: as if\nonly the camera moved. A ratio well above 1: depth (flat), or knowing that objects "
+         "move (still), has much of the\nimage loss to win. About 1: nothing.\n";
 }
 
 }  // namespace vkopple

@@ -26,10 +26,8 @@ std::string pictures_section(const Report& report) {
   }
   std::string html = fmt::format(
       "<p>The first {} of the images. Objects are tinted and outlined in white, over the image in grey; "
-      "colours tell the "
-      "objects of one picture apart and mean nothing beyond it. Depth runs from bright yellow at the camera "
-      "over red to "
-      "black at {:g} scene units and beyond; what is unknown is black too.</p>\n",
+      "colours tell the objects of one picture apart and mean nothing beyond it. Depth runs from bright yellow "
+      "at the camera over red to black at {:g} scene units and beyond; what is unknown is black too.</p>\n",
       grid.size(), report.config.model.max_depth);
   if (!objects)
     html += "<p class=\"note\">The object network has not learned yet, so there are no inferred objects.</p>\n";

@@ -65,8 +65,7 @@ std::string all_from_above(const Report& report) {
   return figure_html(
       top_view(pairs, reach, report.half_view, "True and inferred places of matched objects from above"),
       fmt::format("{} of {} matched objects from above, the camera below in the middle, the borders of its "
-                  "view dashed: "
-                  "{}. A line joins the two places of an object.",
+                  "view dashed: {}. A line joins the two places of an object.",
                   pairs.size(), report.held_out.matched.size(), kKey));
 }
 
@@ -82,8 +81,7 @@ std::string each_from_above(const Report& report) {
                           fmt::format("Image {}", i + 1));
   if (html.empty()) return html;
   return "<h3>The first images one by one</h3>\n<p class=\"quiet\">With the places of all slots and of all "
-         "objects in "
-         "sight; those without a line are matched with nothing.</p>\n<div class=\"plots\">\n" +
+         "objects in sight; those without a line are matched with nothing.</p>\n<div class=\"plots\">\n" +
          html + "</div>\n";
 }
 
@@ -102,10 +100,8 @@ std::string places_section(const Report& report) {
                         fmt::format("<p>Nothing to show: {}.</p>\n", nothing_to_show(report)));
   std::string html =
       "<p>Places in the camera’s frame, x to the right and y forward, in scene units. The angle is atan2(x, "
-      "y), to "
-      "the right of straight ahead, the distance √(x² + y²). An object is matched with the slot whose mask "
-      "overlaps it "
-      "most.</p>\n<div class=\"plots\">\n";
+      "y), to the right of straight ahead, the distance √(x² + y²). An object is matched with the slot whose "
+      "mask overlaps it most.</p>\n<div class=\"plots\">\n";
   html += all_from_above(report);
   html += scatter_plot(matched, {"angle", "degrees", &LabelledLocation::angle, 180 / std::numbers::pi});
   html += scatter_plot(matched, {"distance", "scene units", &LabelledLocation::distance, 1});

@@ -26,15 +26,12 @@ std::string poses_section(const Report& report) {
                         fmt::format("<p>Nothing to show: {}.</p>\n", nothing_to_show(report)));
   std::string html = fmt::format(
       "<p>Probability of each of the {} bins of yaw of objects that are matched with a slot, seen from above: "
-      "up is away "
-      "from the camera, angles grow counter-clockwise, the most likely bin reaches the rim. Dashed: bins as "
-      "likely as "
-      "each other, where nothing is known. The stroke outside the rim is the true yaw, where it is known.</p>\n"
+      "up is away from the camera, angles grow counter-clockwise, the most likely bin reaches the rim. Dashed: "
+      "bins as likely as each other, where nothing is known. The stroke outside the rim is the true yaw, where "
+      "it is known.</p>\n"
       "<p class=\"note\">The model chooses for itself where an object’s yaw begins, so between stroke and peak "
-      "lies an "
-      "angle of the object’s own, unknown and the same in all its frames. The shape tells how sure the model "
-      "is; "
-      "the distance from stroke to peak tells nothing.</p>\n<div class=\"plots small\">\n",
+      "lies an angle of the object’s own, unknown and the same in all its frames. The shape tells how sure the "
+      "model is; the distance from stroke to peak tells nothing.</p>\n<div class=\"plots small\">\n",
       report.config.model.bins);
   for (const SeenYaw& yaw : yaws)
     html += figure_html(

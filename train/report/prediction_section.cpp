@@ -34,11 +34,9 @@ std::string prediction_section(const Report& report) {
   }
   const std::string html =
       "<p>The third frame of a triplet, predicted from the two before and the camera’s motion. Warped: the "
-      "pixels of frame "
-      "2, moved as their objects and the camera move; black where nothing lands. Imagined: what the "
-      "imagination "
-      "network draws. Blended: both, by the weight, white where the warped image counts alone. Errors are of "
-      "colours from 0 to 1; a prediction should beat frame 2 left as it is.</p>\n";
+      "pixels of frame 2, moved as their objects and the camera move; black where nothing lands. Imagined: "
+      "what the imagination network draws. Blended: both, by the weight, white where the warped image counts "
+      "alone. Errors are of colours from 0 to 1; a prediction should beat frame 2 left as it is.</p>\n";
   return section_html("predictions", "What it predicts", html + rows.html());
 }
 

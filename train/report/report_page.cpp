@@ -20,8 +20,7 @@ std::string summary(const Report& report) {
   const TrainingPosition& at = report.position;
   return fmt::format(
       "<p>Step {} of training on {}, in the stage {} (step {} of it), seed {}; images of {} × {} pixels, {} "
-      "slots for "
-      "objects. Looked at with {} images of {}.</p>\n",
+      "slots for objects. Looked at with {} images of {}.</p>\n",
       at.step, escape_html(at.data), escape_html(report.config.stages().at(at.stage).name), at.stage_step,
       at.seed, model.width, model.height, model.slots, report.held_out.scores.images(),
       escape_html(report.data));

@@ -55,24 +55,18 @@ std::string scores_section(const Report& report) {
   std::string html = table(columns);
   html += fmt::format(
       "<p class=\"quiet\">{} images, of which {} show no object and are left out of ARI-fg and the IoU of "
-      "objects. "
-      "1 is perfect everywhere. ARI-fg: adjusted Rand index over the pixels of objects, 0 by chance. IoU: "
-      "intersection "
-      "over union of objects and background with what they are matched with; nothing but background still gets "
-      "about "
-      "a quarter. r: correlation with the truth, of depth over pixels, of angle and distance over matched "
-      "objects. "
-      "–: undefined.</p>\n",
+      "objects. 1 is perfect everywhere. ARI-fg: adjusted Rand index over the pixels of objects, 0 by chance. "
+      "IoU: intersection over union of objects and background with what they are matched with; nothing but "
+      "background still gets about a quarter. r: correlation with the truth, of depth over pixels, of angle "
+      "and distance over matched objects. –: undefined.</p>\n",
       scores.images(), scores.skipped());
   for (const std::string& line : scores.left_out())
     html += fmt::format("<p class=\"note\">{}</p>\n", escape_html(line));
   html +=
       "<p class=\"quiet\">Beside the model stand masks that need no learning, on the same images. background: "
-      "every pixel is "
-      "background; one object: every pixel is of one object; random: every pixel of a random slot or "
-      "background; k-means: "
-      "clusters of colour and place, as many as slots and background; truth: what true masks, depth and places "
-      "get.</p>\n"
+      "every pixel is background; one object: every pixel is of one object; random: every pixel of a random "
+      "slot or background; k-means: clusters of colour and place, as many as slots and background; truth: what "
+      "true masks, depth and places get.</p>\n"
       "<p class=\"quiet\">* The model’s authors, after training on 275 thousand triplets of their own rooms, "
       "128 × 128 pixels: other images, so a rough guide and no comparison.</p>\n";
   return section_html("scores", "Scores", html);

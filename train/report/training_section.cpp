@@ -115,10 +115,8 @@ std::string training_section(const Report& report) {
   const TrainingCurves& curves = *report.curves;
   std::string html = fmt::format(
       "<p>{} steps. A line is the mean of a stretch of steps, the shade around it reaches from the least to "
-      "the largest "
-      "value there. Stages of training begin at dashed lines; what they add up to a total differs. Of all "
-      "losses lower is "
-      "better; that of collapse is negative by its nature.</p>\n",
+      "the largest value there. Stages of training begin at dashed lines; what they add up to a total differs. "
+      "Of all losses lower is better; that of collapse is negative by its nature.</p>\n",
       curves.steps);
   if (curves.not_finite > 0)
     html += fmt::format("<p class=\"note\">{} losses were no finite number and are left out.</p>\n",

@@ -12,33 +12,16 @@
 
 #include "runtime/error.h"
 #include "train/quote.h"
+#include "train/write_advice.h"
 
 namespace vkopple {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string_view advice(int code) {
-  switch (code) {
-    case ENOSPC:
-    case EDQUOT:
-    case EFBIG:
-      return "; free some space or choose another folder";
-    case ENOENT:
-    case ENOTDIR:
-      return "; create the folder or correct the path";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "; choose a folder that may be written, or change its permissions";
-    default:
-      return "";
-  }
-}
-
 [[noreturn]] void fail_writing(const fs::path& target, int code) {
   throw Error(fmt::format("cannot write {}: {}{}", quote(target.string(), 4096),
-                          std::generic_category().message(code), advice(code)));
+                          std::generic_category().message(code), write_advice(code)));
 }
 
 [[noreturn]] void fail_reading(const fs::path& path, std::string_view reason) {
@@ -86,24 +69,25 @@ Bytes read_whole(const fs::path& path, std::size_t max_bytes) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const fs::path& target) : target_(resolve_target(target)) {
+AtomicFile::AtomicFile(const fs::path& target, FileSystem& files)
+    : files_(&files), target_(resolve_target(target)) {
   constexpr int kAttempts = 1000;  // names taken by remains of a process that died with our number
   for (int n = 0; n < kAttempts && !file_.is_open(); ++n) {
     temporary_ = target_;
     temporary_ += fmt::format(".tmp-{}-{}", ::getpid(), n);
-    file_ = FileDescriptor(::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    file_ = files.open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL);
     if (!file_.is_open() && errno != EEXIST) fail_writing(target_, errno);
   }
   if (!file_.is_open()) fail_writing(target_, EEXIST);
 }
 
 AtomicFile::~AtomicFile() {
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) files_->unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(file_.get(), bytes.data(), bytes.size());
+    const ssize_t written = files_->write(file_.get(), bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail_writing(target_, errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -114,20 +98,20 @@ void AtomicFile::write(std::string_view text) { write(std::as_bytes(std::span(te
 
 void AtomicFile::commit() {
   if (!file_.is_open()) throw Error(fmt::format("{} was already written", quote(target_.string(), 4096)));
-  if (::fsync(file_.get()) != 0) fail_writing(target_, errno);
-  if (!file_.close()) fail_writing(target_, errno);
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail_writing(target_, errno);
+  if (files_->sync(file_.get()) != 0) fail_writing(target_, errno);
+  if (files_->close(file_) != 0) fail_writing(target_, errno);
+  if (files_->rename(temporary_.c_str(), target_.c_str()) != 0) fail_writing(target_, errno);
   temporary_.clear();
   sync_folder();
 }
 
 void AtomicFile::sync_folder() const {
   const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-  const FileDescriptor handle(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor handle = files_->open(folder.c_str(), O_RDONLY | O_DIRECTORY);
   // A folder may be writable but not readable, and some file systems can't sync folders: the file itself is
   // safe.
   if (!handle.is_open()) return;
-  if (::fsync(handle.get()) != 0 && errno == EIO) fail_writing(target_, errno);
+  if (files_->sync(handle.get()) != 0 && errno == EIO) fail_writing(target_, errno);
 }
 
 void write_file(const fs::path& path, std::span<const std::byte> bytes) {

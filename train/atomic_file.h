@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "train/file_descriptor.h"
+#include "train/file_system.h"
 
 namespace vkopple {
 
@@ -19,7 +20,7 @@ namespace vkopple {
 /// `Error` with the target's path and the system's reason.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::filesystem::path& target);
+  explicit AtomicFile(const std::filesystem::path& target, FileSystem& files = system_files());
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -36,6 +37,7 @@ class AtomicFile {
  private:
   void sync_folder() const;
 
+  FileSystem* files_;
   std::filesystem::path target_;
   std::filesystem::path temporary_;
   FileDescriptor file_;

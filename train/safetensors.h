@@ -8,6 +8,7 @@
 
 #include "train/file_descriptor.h"
 #include "train/stored_tensor.h"
+#include "train/file_system.h"
 #include "train/tensor_file.h"
 
 namespace vkopple {
@@ -58,8 +59,8 @@ class SafetensorsFile : public TensorFile {
 /// Writes a file through AtomicFile. The same content gives the same bytes: tensors lie by falling element size
 /// (so each is aligned), then by name, and spaces fill the header to a multiple of 8 bytes.
 void write_safetensors(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
-                       const std::map<std::string, TensorView>& tensors);
+                       const std::map<std::string, TensorView>& tensors, FileSystem& files = system_files());
 void write_safetensors(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
-                       const std::map<std::string, StoredTensor>& tensors);
+                       const std::map<std::string, StoredTensor>& tensors, FileSystem& files = system_files());
 
 }  // namespace vkopple

@@ -70,7 +70,7 @@ std::string header_text(const std::map<std::string, std::string>& metadata,
 }  // namespace
 
 void write_safetensors(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
-                       const std::map<std::string, TensorView>& tensors) {
+                       const std::map<std::string, TensorView>& tensors, FileSystem& files) {
   for (const Named& named : tensors) check(path, named);
   const std::vector<const Named*> order = data_order(tensors);
   std::string header;
@@ -80,7 +80,7 @@ void write_safetensors(const std::filesystem::path& path, const std::map<std::st
     throw Error(fmt::format("cannot write {}: a name or metadata text in it is not UTF-8",
                             one_line(path.string(), 4096)));
   }
-  AtomicFile file(path);
+  AtomicFile file(path, files);
   const auto length = std::bit_cast<std::array<std::byte, 8>>(static_cast<std::uint64_t>(header.size()));
   file.write(length);
   file.write(header);
@@ -89,8 +89,8 @@ void write_safetensors(const std::filesystem::path& path, const std::map<std::st
 }
 
 void write_safetensors(const std::filesystem::path& path, const std::map<std::string, std::string>& metadata,
-                       const std::map<std::string, StoredTensor>& tensors) {
-  write_safetensors(path, metadata, std::map<std::string, TensorView>(tensors.begin(), tensors.end()));
+                       const std::map<std::string, StoredTensor>& tensors, FileSystem& files) {
+  write_safetensors(path, metadata, std::map<std::string, TensorView>(tensors.begin(), tensors.end()), files);
 }
 
 }  // namespace vkopple

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -30,6 +31,15 @@ uint64_t bytes_to_keep(const std::filesystem::path& path, uint64_t step) {
   return bytes;
 }
 
+/// Cuts off what does not belong, and returns the path.
+const std::filesystem::path& shortened(const std::filesystem::path& path, uint64_t step) {
+  if (!std::filesystem::exists(path)) return path;
+  std::error_code failure;
+  std::filesystem::resize_file(path, bytes_to_keep(path, step), failure);
+  if (failure) throw Error(fmt::format("{}: cannot be shortened: {}", path.string(), failure.message()));
+  return path;
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const StepRecord& record) {
@@ -54,19 +64,9 @@ nlohmann::ordered_json to_json(const StepRecord& record) {
   return json;
 }
 
-TrainingLog::TrainingLog(std::filesystem::path path, uint64_t step) : path_(std::move(path)) {
-  if (std::filesystem::exists(path_)) {
-    std::error_code failure;
-    std::filesystem::resize_file(path_, bytes_to_keep(path_, step), failure);
-    if (failure) throw Error(fmt::format("{}: cannot be shortened: {}", path_.string(), failure.message()));
-  }
-  file_.open(path_, std::ios::binary | std::ios::app);
-  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
-}
+TrainingLog::TrainingLog(const std::filesystem::path& path, uint64_t step, FileSystem& files)
+    : file_(shortened(path, step), files) {}
 
-void TrainingLog::add(const StepRecord& record) {
-  file_ << to_json(record).dump() << '\n' << std::flush;
-  if (!file_) throw Error(fmt::format("{}: cannot be written: {}", path_.string(), reason()));
-}
+void TrainingLog::add(const StepRecord& record) { file_.add(to_json(record).dump() + '\n'); }
 
 }  // namespace vkopple

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "train/append_file.h"
 #include "train/step_record.h"
 
 namespace vkopple {
@@ -18,13 +18,12 @@ class TrainingLog {
  public:
   /// Opens it to go on after `step` steps: what it holds from the first line on that belongs to a later step,
   /// or is no such line, is cut off.
-  TrainingLog(std::filesystem::path path, uint64_t step);
+  TrainingLog(const std::filesystem::path& path, uint64_t step, FileSystem& files = system_files());
 
   void add(const StepRecord& record);
 
  private:
-  std::filesystem::path path_;
-  std::ofstream file_;
+  AppendFile file_;
 };
 
 }  // namespace vkopple

@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <span>
+#include <sstream>
+#include <string_view>
 #include <system_error>
 
-#include "runtime/error.h"
 #include "train/formats/tfrecord.h"
 #include "train/image_io.h"
 
@@ -37,17 +39,33 @@ std::string host() {
   return name.data();
 }
 
-/// TensorBoard shows files by their names' order, so that the time stands first; the step tells two apart that
-/// a process opens within a second.
-fs::path name(uint64_t step) {
-  return fmt::format("events.out.tfevents.{:010}.{}.{}.{}", static_cast<int64_t>(now()), host(), ::getpid(),
-                     step);
+constexpr std::string_view kBefore = "events.out.tfevents.";
+
+/// The latest time in the names of a folder's files of events; 0 where there are none.
+int64_t latest_time(const fs::path& folder) {
+  int64_t latest = 0;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    const std::string name = entry.path().filename().string();
+    int64_t time = 0;
+    if (!name.starts_with(kBefore)) continue;
+    std::from_chars(name.data() + kBefore.size(), name.data() + name.size(), time);
+    latest = std::max(latest, time);
+  }
+  return latest;
+}
+
+/// TensorBoard reads files in their names' order, so that the time stands first. A clock that was set back must
+/// not put a file before one that it goes on from, nor one that was opened within the same second.
+fs::path name(const fs::path& folder, uint64_t step) {
+  const int64_t time = std::max(static_cast<int64_t>(now()), latest_time(folder) + 1);
+  return fmt::format("{}{:010}.{}.{}.{}", kBefore, time, host(), ::getpid(), step);
 }
 
 }  // namespace
 
-EventFile::EventFile(const fs::path& folder, uint64_t step) : path_(folder / name(step)) {
-  file_.open(path_, std::ios::binary | std::ios::app);
+EventFile::EventFile(const fs::path& folder, uint64_t step, FileSystem& files)
+    : file_(folder / name(folder, step), files) {
   Event version = event(0);
   version.set_file_version("brain.Event:2");
   write(version.SerializeAsString());
@@ -79,11 +97,9 @@ void EventFile::add(uint64_t step, const std::string& tag, const RgbImage& pictu
 }
 
 void EventFile::write(const std::string& message) {
-  write_tfrecord(file_, std::as_bytes(std::span(message)));
-  file_.flush();
-  if (!file_)
-    throw Error(
-        fmt::format("{}: cannot be written: {}", path_.string(), std::generic_category().message(errno)));
+  std::ostringstream record;
+  write_tfrecord(record, std::as_bytes(std::span(message)));
+  file_.add(record.str());
 }
 
 }  // namespace vkopple

@@ -3,12 +3,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "train/append_file.h"
 #include "train/image.h"
 
 namespace vkopple {
@@ -20,19 +20,18 @@ class EventFile {
   using Scalars = std::map<std::string, double>;
 
   /// A new file in `folder`, which exists, for a run that goes on after `step` steps: what older files of the
-  /// folder tell of later steps is void.
-  EventFile(const std::filesystem::path& folder, uint64_t step);
+  /// folder tell of later steps is void. Its name comes behind theirs, wherever the clock stands.
+  EventFile(const std::filesystem::path& folder, uint64_t step, FileSystem& files = system_files());
 
   void add(uint64_t step, const Scalars& scalars);
   void add(uint64_t step, const std::string& tag, const RgbImage& picture);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
 
  private:
   void write(const std::string& message);
 
-  std::filesystem::path path_;
-  std::ofstream file_;
+  AppendFile file_;
 };
 
 }  // namespace vkopple

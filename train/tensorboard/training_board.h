@@ -20,7 +20,8 @@ class TrainingBoard {
   static constexpr int kSteps = 10;
 
   /// As EventFile.
-  TrainingBoard(const std::filesystem::path& folder, uint64_t step) : file_(folder, step) {}
+  TrainingBoard(const std::filesystem::path& folder, uint64_t step, FileSystem& files = system_files())
+      : file_(folder, step, files) {}
 
   void add(const StepRecord& record);
   /// Rows of pictures, as HeldOutProbe gives them.

@@ -7,6 +7,7 @@
 #include "runtime/error.h"
 #include "tests/support/events.h"
 #include "tests/support/temp_folder.h"
+#include "train/atomic_file.h"
 #include "train/image_io.h"
 
 namespace vkopple {
@@ -57,6 +58,17 @@ TEST(EventFile, PicturesArePngs) {
   EXPECT_EQ(value.picture().colours(), 3);
   const std::string& png = value.picture().png();
   EXPECT_EQ(decode_png(std::as_bytes(std::span(png)), "event").pixels, image.pixels);
+}
+
+TEST(EventFile, ComesLastWhereverTheClockStands) {
+  const TempFolder folder;
+  write_file(folder / "events.out.tfevents.9999999990.host.1.0", "");  // of a clock that was set back since
+  const EventFile second(folder.path(), 3);
+  const EventFile third(folder.path(), 4);
+  const auto files = test::event_files(folder.path());
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_EQ(files[1], second.path());
+  EXPECT_EQ(files[2], third.path());
 }
 
 TEST(EventFile, AFolderThatIsNotThereIsNamed) {

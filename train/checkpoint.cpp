@@ -14,6 +14,7 @@
 #include "train/quote.h"
 #include "train/run_folder.h"
 #include "train/safetensors.h"
+#include "train/tensor_checksums.h"
 
 namespace vkopple {
 namespace {
@@ -136,7 +137,7 @@ void require_usable(const std::string& name, std::span<const float> values, cons
 }
 
 void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
-                     const TrainingPosition& position) {
+                     const TrainingPosition& position, const Metadata& more, FileSystem& files) {
   std::map<std::string, StoredTensor> tensors;
   for (const auto* entries : {&store.layout().weights(), &store.layout().optimiser()}) {
     for (const LayoutEntry& entry : *entries) {
@@ -147,7 +148,9 @@ void save_checkpoint(const std::filesystem::path& path, const ModelStore& store,
   }
   for (const auto& [name, count] : store.batch_counters())
     tensors.emplace(name, StoredTensor::of({}, std::span(&count, 1)));
-  write_safetensors(path, checkpoint_metadata({config, position}), tensors);
+  Metadata metadata = checkpoint_metadata({config, position});
+  metadata.insert(more.begin(), more.end());
+  write_safetensors(path, with_checksums(std::move(metadata), tensors), tensors, files);
 }
 
 CheckpointHeader read_checkpoint_header(const std::filesystem::path& path) {

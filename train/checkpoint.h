@@ -7,6 +7,7 @@
 #include <string>
 
 #include "models/config.h"
+#include "train/file_system.h"
 #include "train/model_store.h"
 #include "train/training_position.h"
 
@@ -19,9 +20,10 @@ namespace vkopple {
 inline constexpr const char* kCheckpointFormat = "vkopple checkpoint";
 
 /// Writes everything that going on needs; the file appears when it is complete. Refuses what require_usable
-/// does.
+/// does. `more`: further metadata.
 void save_checkpoint(const std::filesystem::path& path, const ModelStore& store, const Config& config,
-                     const TrainingPosition& position);
+                     const TrainingPosition& position, const std::map<std::string, std::string>& more = {},
+                     FileSystem& files = system_files());
 
 /// What a checkpoint says of itself.
 struct CheckpointHeader {

@@ -170,6 +170,7 @@ class SafetensorsFile::HeaderReader {
 SafetensorsFile::SafetensorsFile(std::filesystem::path path)
     : path_(std::move(path)), file_(open_for_reading(path_)) {
   HeaderReader(*this).run();
+  checksums_.emplace(metadata_, path_);
 }
 
 std::vector<std::string> SafetensorsFile::names() const {
@@ -192,6 +193,7 @@ StoredTensor SafetensorsFile::read(const std::string& name) const {
   StoredTensor tensor{where.dtype, where.shape, {}};
   tensor.bytes.resize(static_cast<std::size_t>(where.end - where.begin));
   read_exactly(file_, data_start_ + where.begin, tensor.bytes, path_);
+  checksums_->check(name, tensor);
   return tensor;
 }
 

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "train/file_descriptor.h"
-#include "train/stored_tensor.h"
 #include "train/file_system.h"
+#include "train/stored_tensor.h"
+#include "train/tensor_checksums.h"
 #include "train/tensor_file.h"
 
 namespace vkopple {
@@ -17,7 +19,8 @@ namespace vkopple {
 ///
 /// Layout: 8 bytes little-endian header length (at most 100 MB), a JSON object {name: {dtype, shape,
 /// data_offsets}} with an optional "__metadata__" of strings, then the data, which the tensors tile without
-/// hole or overlap. Whatever breaks this is an Error that names the file, the tensor and what is wrong.
+/// hole or overlap. Whatever breaks this is an Error that names the file, the tensor and what is wrong, and so
+/// is a tensor that belies the file's checksums (train/tensor_checksums.h), where it has some, when it is read.
 class SafetensorsFile : public TensorFile {
  public:
   explicit SafetensorsFile(std::filesystem::path path);
@@ -54,6 +57,7 @@ class SafetensorsFile : public TensorFile {
   std::uint64_t data_start_ = 0;
   std::map<std::string, std::string> metadata_;
   std::map<std::string, Entry> entries_;
+  std::optional<TensorChecksums> checksums_;
 };
 
 /// Writes a file through AtomicFile. The same content gives the same bytes: tensors lie by falling element size

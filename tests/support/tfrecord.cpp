@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "train/atomic_file.h"
-#include "train/formats/crc32c.h"
+#include "train/crc32c.h"
 
 namespace vkopple::test {
 namespace {

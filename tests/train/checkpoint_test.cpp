@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <map>
 
@@ -12,6 +13,7 @@
 #include "tests/support/test_device.h"
 #include "train/atomic_file.h"
 #include "train/safetensors.h"
+#include "train/tensor_checksums.h"
 
 namespace vkopple {
 namespace {
@@ -54,7 +56,7 @@ class CheckpointFile : public testing::Test {
     std::map<std::string, std::string> metadata;
     {
       const SafetensorsFile file(path());
-      metadata = file.metadata();
+      metadata = without_checksums(file.metadata());
       for (const auto& name : file.names()) tensors.emplace(name, file.read(name));
     }
     edit(metadata, tensors);
@@ -191,6 +193,60 @@ TEST_F(CheckpointFile, RefusesWhatIsCutShort) {
   write_file(path(), bytes);
   expect_error([&] { load(); }, {"a.safetensors"});
   expect_error([&] { load_model(test_device(), folder_ / "absent"); }, {"absent"});
+}
+
+TEST_F(CheckpointFile, NamesTheTensorThatIsDamaged) {
+  auto bytes = read_file(path(), kLargestFile);
+  bytes[bytes.size() - 3] ^= std::byte{4};  // of the last in the order of element sizes and names
+  write_file(path(), bytes);
+  const std::string last = SafetensorsFile(path()).names().back();
+  expect_error([&] { load(); }, {"a.safetensors", last, "damaged"});
+  expect_error([&] { load_model(test_device(), path()); }, {"a.safetensors", last, "damaged"});
+}
+
+TEST_F(CheckpointFile, WithoutChecksumsItIsTakenAsItIs) {
+  change([](auto&, auto&) {});
+  EXPECT_FALSE(SafetensorsFile(path()).metadata().contains("crc32c"));
+  load();
+}
+
+/// A bit anywhere in the file, turned over: it is refused, or nothing that it says has changed.
+TEST_F(CheckpointFile, NoBitIsLostUnseen) {
+  const auto whole = [&] {
+    std::map<std::string, StoredTensor> tensors;
+    const SafetensorsFile file(path());
+    for (const auto& name : file.names()) tensors.emplace(name, file.read(name));
+    return std::pair(checkpoint_metadata(read_checkpoint_header(path())), tensors);
+  };
+  const auto before = whole();
+  const auto same = [&](const auto& now) {
+    return now.first == before.first &&
+           std::equal(now.second.begin(), now.second.end(), before.second.begin(), before.second.end(),
+                      [](const auto& a, const auto& b) {
+                        return a.first == b.first && a.second.dtype == b.second.dtype &&
+                               a.second.shape == b.second.shape && a.second.bytes == b.second.bytes;
+                      });
+  };
+  const auto bytes = read_file(path(), kLargestFile);
+  std::fstream file(path(), std::ios::binary | std::ios::in | std::ios::out);
+  const auto put = [&](size_t at, std::byte byte) {
+    file.seekp(static_cast<std::streamoff>(at));
+    file.put(static_cast<char>(byte)).flush();
+  };
+  constexpr size_t kFlips = 120;
+  size_t refused = 0;
+  for (size_t i = 0; i < kFlips; ++i) {
+    const size_t at = i * bytes.size() / kFlips;
+    put(at, bytes[at] ^ std::byte{1} << (i % 8));
+    try {
+      EXPECT_TRUE(same(whole())) << "byte " << at;
+    } catch (const Error&) {
+      ++refused;
+    }
+    put(at, bytes[at]);
+  }
+  EXPECT_GT(refused, kFlips * 9 / 10);
+  EXPECT_TRUE(same(whole()));
 }
 
 TEST_F(CheckpointFile, WhatCouldNotBeLoadedIsNotWritten) {

@@ -15,6 +15,7 @@
 #include "train/quote.h"
 #include "train/safetensors.h"
 #include "train/stage_plan.h"
+#include "train/tensor_checksums.h"
 
 namespace vkopple {
 namespace {
@@ -166,7 +167,7 @@ void write_model_checkpoint(const std::filesystem::path& path, const ModelWeight
     const auto values = initial_values(entry.initial, entry.shape.elements(), 0, entry.name);
     tensors.emplace(entry.name, StoredTensor::of(entry.stored_shape(), std::span(values)));
   }
-  write_safetensors(path, checkpoint_metadata(weights.header), tensors);
+  write_safetensors(path, with_checksums(checkpoint_metadata(weights.header), tensors), tensors);
 }
 
 void export_weights(const std::filesystem::path& path, const ModelWeights& weights, bool bgr) {

@@ -14,7 +14,7 @@
 
 #include "runtime/error.h"
 #include "train/atomic_file.h"
-#include "train/formats/crc32c.h"
+#include "train/crc32c.h"
 #include "train/quote.h"
 
 namespace vkopple {

@@ -1,4 +1,4 @@
-#include "train/formats/crc32c.h"
+#include "train/crc32c.h"
 
 #include <array>
 #include <bit>
@@ -26,8 +26,8 @@ constexpr auto kTables = [] {
 
 }  // namespace
 
-std::uint32_t crc32c(std::span<const std::byte> bytes) {
-  std::uint32_t crc = 0xffffffff;
+std::uint32_t crc32c(std::span<const std::byte> bytes, std::uint32_t before) {
+  std::uint32_t crc = ~before;
   const auto octet = [&](std::size_t i) { return std::to_integer<std::uint32_t>(bytes[i]); };
   std::size_t at = 0;
   for (; at + kStride <= bytes.size(); at += kStride) {

@@ -1,4 +1,4 @@
-#include "train/formats/crc32c.h"
+#include "train/crc32c.h"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +47,13 @@ TEST(Crc32c, EveryLengthAgreesWithTheDefinition) {
     EXPECT_EQ(crc32c(bytes), ~crc) << bytes.size() << " bytes";
     bytes.push_back(static_cast<std::byte>(i * 37 + 11));
   }
+}
+
+TEST(Crc32c, PiecesGiveWhatTheWholeGives) {
+  const std::vector<std::byte> bytes = counting(3, 7);
+  const std::span all(bytes);
+  for (std::size_t cut = 0; cut <= bytes.size(); ++cut)
+    EXPECT_EQ(crc32c(all.subspan(cut), crc32c(all.first(cut))), crc32c(all)) << cut;
 }
 
 TEST(Crc32c, MaskRotatesAndAdds) {

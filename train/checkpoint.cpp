@@ -22,6 +22,8 @@ namespace {
 using Metadata = std::map<std::string, std::string>;
 
 constexpr const char* kVersion = "1";
+constexpr const char* kSkipped = "skipped_steps";
+constexpr const char* kSkippedInARow = "skipped_in_a_row";
 
 std::string shown(const std::filesystem::path& path) { return one_line(path.string()); }
 
@@ -73,26 +75,39 @@ bool is_never_negative(const std::string& name) {
          (name.starts_with("adam/") && name.find("/v/") != std::string::npos);
 }
 
-/// Of a file whose tensors were checked.
+// These read of a file whose tensors were checked.
+
+std::vector<float> read_entry(const SafetensorsFile& file, const LayoutEntry& entry) {
+  std::vector<float> values = file.read_floats(entry.name);
+  require_usable(entry.name, values, file.path());
+  return values;
+}
+
+int64_t read_counter(const SafetensorsFile& file, const std::string& name) {
+  const int64_t count = file.read_ints(name).at(0);
+  if (count < 0) throw Error(fmt::format("{}: {} is negative", shown(file.path()), name));
+  return count;
+}
+
 void read_entries(const SafetensorsFile& file, ModelStore& store, const std::vector<LayoutEntry>& entries) {
-  for (const LayoutEntry& entry : entries) {
-    const std::vector<float> values = file.read_floats(entry.name);
-    require_usable(entry.name, values, file.path());
-    store.write(entry, values);
-  }
+  for (const LayoutEntry& entry : entries) store.write(entry, read_entry(file, entry));
 }
 
 void read_counters(const SafetensorsFile& file, ModelStore& store) {
-  for (auto& [name, count] : store.batch_counters()) {
-    count = file.read_ints(name).at(0);
-    if (count < 0) throw Error(fmt::format("{}: {} is negative", shown(file.path()), name));
-  }
+  for (auto& [name, count] : store.batch_counters()) count = read_counter(file, name);
 }
 
 std::map<std::string, StoredShape> weight_shapes(const ModelLayout& layout) {
   std::map<std::string, StoredShape> shapes;
   add_shapes(shapes, layout.weights());
   for (const std::string& name : layout.batch_counters()) shapes[name] = {};
+  return shapes;
+}
+
+/// Of all that training goes on with.
+std::map<std::string, StoredShape> all_shapes(const ModelLayout& layout) {
+  auto shapes = weight_shapes(layout);
+  add_shapes(shapes, layout.optimiser());
   return shapes;
 }
 
@@ -105,13 +120,17 @@ CheckpointHeader parse_checkpoint_header(const Metadata& metadata, const std::fi
     throw Error(fmt::format("{}: is {} version {}; this program reads {} version {}", shown(path),
                             quote(format), quote(version), kCheckpointFormat, kVersion));
   const auto number = [&](const char* key) { return metadata_number(metadata, path, key); };
+  // Older files lack them.
+  const auto later_number = [&](const char* key) { return metadata.contains(key) ? number(key) : 0; };
   CheckpointHeader header;
   header.config = Config::parse(metadata_text(metadata, path, "config"), path.string() + ": config");
   header.position = {.step = number("step"),
                      .stage = number("stage"),
                      .stage_step = number("stage_step"),
                      .seed = number("seed"),
-                     .data = metadata_text(metadata, path, "data")};
+                     .data = metadata_text(metadata, path, "data"),
+                     .skipped = later_number(kSkipped),
+                     .skipped_in_a_row = later_number(kSkippedInARow)};
   if (header.position.stage >= header.config.stages().size())
     throw Error(fmt::format("{}: is in stage {} of a configuration of {}", shown(path), header.position.stage,
                             header.config.stages().size()));
@@ -127,7 +146,9 @@ Metadata checkpoint_metadata(const CheckpointHeader& header) {
           {"stage", std::to_string(position.stage)},
           {"stage_step", std::to_string(position.stage_step)},
           {"seed", std::to_string(position.seed)},
-          {"data", position.data}};
+          {"data", position.data},
+          {kSkipped, std::to_string(position.skipped)},
+          {kSkippedInARow, std::to_string(position.skipped_in_a_row)}};
 }
 
 void require_usable(const std::string& name, std::span<const float> values, const std::filesystem::path& path) {
@@ -157,15 +178,24 @@ CheckpointHeader read_checkpoint_header(const std::filesystem::path& path) {
   return header_of(SafetensorsFile(path));
 }
 
+TrainingPosition verify_checkpoint(const std::filesystem::path& path) {
+  const SafetensorsFile file(path);
+  const CheckpointHeader header = header_of(file);
+  const ModelLayout layout(header.config.model, header.config.training.precision);
+  check_tensors(file, all_shapes(layout), {});
+  for (const auto* entries : {&layout.weights(), &layout.optimiser()})
+    for (const LayoutEntry& entry : *entries) read_entry(file, entry);
+  for (const std::string& name : layout.batch_counters()) read_counter(file, name);
+  return header.position;
+}
+
 TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& store, const Config& config) {
   const SafetensorsFile file(path);
   const CheckpointHeader header = header_of(file);
   if (const auto difference = first_difference(header.config, config))
     throw Error(fmt::format("{}: was trained with another configuration: {} is {} there and {} here",
                             shown(path), difference->key, difference->first, difference->second));
-  auto shapes = weight_shapes(store.layout());
-  add_shapes(shapes, store.layout().optimiser());
-  check_tensors(file, shapes, {});
+  check_tensors(file, all_shapes(store.layout()), {});
   read_entries(file, store, store.layout().weights());
   read_entries(file, store, store.layout().optimiser());
   read_counters(file, store);

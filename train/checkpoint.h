@@ -40,6 +40,9 @@ std::map<std::string, std::string> checkpoint_metadata(const CheckpointHeader& h
 /// ones of a running variance, of Adam's means of squares, and of the loss scale's state.
 void require_usable(const std::string& name, std::span<const float> values, const std::filesystem::path& path);
 
+/// Reads all of a checkpoint and refuses it where training could not go on from it. Needs no device.
+TrainingPosition verify_checkpoint(const std::filesystem::path& path);
+
 /// Fills a store with all of a checkpoint, to go on training. The checkpoint must be of this configuration.
 TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& store, const Config& config);
 

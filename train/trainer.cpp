@@ -22,6 +22,7 @@ namespace vkopple {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+static_assert(Clock::is_steady);
 
 constexpr int kProbeBatch = 16;
 /// All weights and gradients are read for them.
@@ -68,6 +69,10 @@ struct Trainer::Stage {
 struct Trainer::Diary {
   TrainingLog log;
   TrainingBoard board;
+      keeper_(options_.folder, options_.keep, resume && leads(), *options_.files,
+              [this](const auto& path, const auto& more) {
+                save_checkpoint(path, store_, config_, position_, more, *options_.files);
+              }),
 };
 
 Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bool resume)
@@ -78,8 +83,9 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
       store_(device, config_.model, config_.training.precision),
       saved_at_(Clock::now()) {
   if (resume) {
-    position_ = load_checkpoint(options_.folder.latest(), store_, config_);
-    saved_step_ = position_.step;
+    const bool latest = options_.checkpoint.empty() || options_.checkpoint == options_.folder.latest();
+    position_ = load_checkpoint(latest ? options_.folder.latest() : options_.checkpoint, store_, config_);
+    if (latest) saved_step_ = position_.step;
   } else {
     if (options_.weights.empty())
       store_.initialise(options_.seed);
@@ -172,9 +178,10 @@ SharedStep Trainer::shared(double waited, double seconds) {
 
 void Trainer::save(bool numbered) {
   if (!leads()) return;
-  if (numbered) save_checkpoint(options_.folder.numbered(position_.step), store_, config_, position_);
-  if (numbered || saved_step_ != position_.step)
-    save_checkpoint(options_.folder.latest(), store_, config_, position_);
+  if (numbered)
+    keeper_.save_numbered(position_.step);
+  else if (saved_step_ != position_.step)
+    keeper_.save_latest();
   saved_step_ = position_.step;
   saved_at_ = Clock::now();
 }
@@ -193,12 +200,13 @@ bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop)
     if (leads()) {
       options_.folder.create();
       if (!diary)
-        diary.emplace(Diary{.log = TrainingLog(options_.folder.log(), position_.step),
-                            .board = TrainingBoard(options_.folder.path(), position_.step)});
+        diary.emplace(Diary{.log = TrainingLog(options_.folder.log(), position_.step, *options_.files),
+                            .board = TrainingBoard(options_.folder.path(), position_.step, *options_.files)});
       listener.say(stage_text(planned));
       if (device_->caps().cpu())
         listener.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
     }
+      if (!diary) options_.folder.remove_remains();
     while (position_.step < planned.end && !stopped) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
       {
@@ -217,6 +225,7 @@ bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop)
       stopped = any(options_.peers, stop());
     }
   }
+          if (record.held_out) keeper_.save_if_best(*record.held_out);
   if (diary) diary->board.flush();
   if (profiler_) profiler_->finish();
   save(false);

@@ -11,6 +11,7 @@
 #include "graph/parallel/peers.h"
 #include "models/config.h"
 #include "train/checkpoint.h"
+#include "train/checkpoint_keeper.h"
 #include "train/data/batch_part.h"
 #include "train/data/triplets.h"
 #include "train/model_store.h"
@@ -24,17 +25,21 @@ namespace vkopple {
 
 struct TrainerOptions {
   RunFolder folder;
-  std::string data;                    ///< as open_triplets takes it
-  std::filesystem::path weights;       ///< of a model, which a new run begins with; empty: random ones
-  std::optional<uint64_t> steps;       ///< of the whole run; see StagePlan
-  uint64_t seed = 0;                   ///< of weights, order, reversals, dropout
-  uint64_t checkpoint_every = 5000;    ///< steps between numbered checkpoints; 0: none
-  uint64_t eval_every = 250;           ///< steps between measurements in held-out rooms; 0: none
-  std::filesystem::path profile;       ///< where a trace (train/trace.h) goes; empty: none
-  int profiled_steps = 1;              ///< of the trace, which leaves out the run's first step
-  int data_threads = 2;                ///< that read files ahead
-  double seconds_between_saves = 600;  ///< after which latest.safetensors is written anyway
-  Peers* peers = nullptr;              ///< processes that share the run; null: this one alone
+  std::string data;                     ///< as open_triplets takes it
+  std::filesystem::path checkpoint;     ///< that a resumed run goes on from; empty: the folder's latest
+  std::filesystem::path weights;        ///< of a model, which a new run begins with; empty: random ones
+  std::optional<uint64_t> steps;        ///< of the whole run; see StagePlan
+  uint64_t seed = 0;                    ///< of weights, order, reversals, dropout
+  uint64_t checkpoint_every = 5000;     ///< steps between numbered checkpoints; 0: none
+  uint64_t keep = 0;                    ///< numbered checkpoints that stay, the last ones; 0: all
+  uint64_t eval_every = 250;            ///< steps between measurements in held-out rooms; 0: none
+  std::filesystem::path profile;        ///< where a trace (train/trace.h) goes; empty: none
+  int profiled_steps = 1;               ///< of the trace, which leaves out the run's first step
+  int data_threads = 2;                 ///< that read files ahead
+  double seconds_between_saves = 600;   ///< after which latest.safetensors is written anyway
+  uint64_t max_bad_steps = 10;          ///< that may be skipped in a row; at so many training stops
+  FileSystem* files = &system_files();  ///< that checkpoints, log and events are written through
+  Peers* peers = nullptr;               ///< processes that share the run; null: this one alone
 };
 
 /// Trains a model by docs/model.md §7 and the stages of its configuration, on a folder of checkpoints and log.
@@ -46,10 +51,12 @@ struct TrainerOptions {
 /// process of rank 0 alone writes files, tells of progress and measures.
 class Trainer {
  public:
-  /// A new run; with `resume` one that goes on from the folder's latest checkpoint, which must be of this
-  /// configuration. Throws Error.
+  /// A new run; with `resume` one that goes on from a checkpoint, which must be of this configuration. Throws
+  /// Error.
   Trainer(const Device& device, Config config, TrainerOptions options, bool resume);
   ~Trainer();
+  Trainer(const Trainer&) = delete;
+  Trainer& operator=(const Trainer&) = delete;
 
   /// Trains until the plan's end, or until `stop` says so after a step, and saves. Whether it came to the end.
   /// On failure the checkpoints written before stay.
@@ -78,7 +85,8 @@ class Trainer {
   StagePlan plan_;
   ModelStore store_;
   TrainingPosition position_;
-  std::optional<uint64_t> saved_step_;
+  CheckpointKeeper keeper_;
+  std::optional<uint64_t> saved_step_;  ///< of latest.safetensors
   std::chrono::steady_clock::time_point saved_at_;
   std::optional<Profiler> profiler_;
 };

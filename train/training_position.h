@@ -12,7 +12,9 @@ struct TrainingPosition {
   uint64_t stage = 0;       ///< of the last step done; 0 before the first
   uint64_t stage_step = 0;  ///< steps done in that stage
   uint64_t seed = 0;
-  std::string data;  ///< what --data said
+  std::string data;               ///< what --data said
+  uint64_t skipped = 0;           ///< steps that changed nothing, as something was not finite
+  uint64_t skipped_in_a_row = 0;  ///< the last ones
 
   bool operator==(const TrainingPosition&) const = default;
 };

@@ -20,6 +20,7 @@
 #include "train/interrupt.h"
 #include "train/parallel/join.h"
 #include "train/parallel/own_device.h"
+#include "train/resume_point.h"
 #include "train/run_folder.h"
 #include "train/trainer.h"
 #include "train/tuning_file.h"
@@ -40,6 +41,7 @@ struct Options {
   std::optional<int> batch;
   std::optional<Precision> precision;
   uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
+  uint64_t keep = TrainerOptions{RunFolder("")}.keep;
   uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
   std::string profile;
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
@@ -82,10 +84,8 @@ Request new_run(const Options& o, TrainerOptions trainer) {
 Request resumed_run(const Options& o, TrainerOptions trainer) {
   if (!o.weights.empty())
     throw UsageError("--weights: a run that is resumed has its own; leave out one of --weights and --resume");
-  if (!std::filesystem::exists(trainer.folder.latest()))
-    throw UsageError(fmt::format("{}: no run to resume, there is no {}", o.out,
-                                 trainer.folder.latest().filename().string()));
-  const CheckpointHeader header = read_checkpoint_header(trainer.folder.latest());
+  trainer.checkpoint = find_resume_point(trainer.folder);
+  const CheckpointHeader header = read_checkpoint_header(trainer.checkpoint);
   if (o.seed && *o.seed != header.position.seed)
     throw UsageError(
         fmt::format("--seed: the run has seed {}; leave it out or give the same", header.position.seed));
@@ -145,6 +145,7 @@ void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
   trainer_options.steps = o.steps;
   trainer_options.checkpoint_every = o.checkpoint_every;
   trainer_options.eval_every = o.eval_every;
+  trainer_options.keep = o.keep;
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   trainer_options.data_threads = o.data_threads;
@@ -205,6 +206,12 @@ void add_train(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--eval-every", o->eval_every,
+  command
+      ->add_option("--keep", o->keep,
+                   "Numbered checkpoints that stay, the last ones; 0: all. best.safetensors and "
+                   "latest.safetensors stay beside them")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
                    "Steps between measurements in unseen rooms: of depth, and of masks once objects are "
                    "learned; 0: none")
       ->capture_default_str()

@@ -21,6 +21,13 @@ Slice stored(Slice slice, const TensorSpec& spec) {
   return slice;
 }
 
+/// Has the watcher told of what a node gave when that is there.
+template <class Watcher>
+void watch(Recorder& recorder, const Watcher& watcher, const Node& node, size_t number,
+           const std::vector<Operand>& given) {
+  if (watcher) recorder.host_step([watcher, &node, number, given] { watcher(node, number, given); });
+}
+
 }  // namespace
 
 /// Decides where every tensor lies: kept ones in an arena or a group, the rest by lifetime in shared blocks.
@@ -264,8 +271,8 @@ Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
     backward_flop_ += vkopple::backward_flop(graph.nodes()[step.node], step, needs_[step.node].backward_flop);
   recomputation_ = plan_recomputation(graph, backward_plan_, needs_, options.recompute_from);
   Layouter(*this, options.in_place).run();
-  record_forward(options.profile);
-  if (loss_) record_backward(options.profile);
+  forward_ = recorded_forward(options.profile, {});
+  if (loss_) backward_ = recorded_backward(options.profile, {});
   if (!graph.updates().empty()) record_update(options.profile);
 }
 
@@ -301,7 +308,7 @@ std::vector<Operand> Executor::operands_in_backward(const std::vector<int>& valu
   return all;
 }
 
-void Executor::record_forward(bool profile) {
+std::unique_ptr<Commands> Executor::recorded_forward(bool profile, const Watcher& watcher) {
   Recorder recorder(*device_, profile);
   for (size_t n = 0; n < graph_->nodes().size(); ++n) {
     const Node& node = graph_->nodes()[n];
@@ -314,12 +321,14 @@ void Executor::record_forward(bool profile) {
       for (const TensorSpec& spec : needs_[n].saved) saved.push_back({spec, {}});
     node.op->record_forward(recorder, {x, y, saved, node_memory_[n].forward_scratch});
     recorder.end_section();
+    watch(recorder, watcher, node, n, y);
   }
-  forward_ = recorder.finish();
+  return recorder.finish();
 }
 
-void Executor::record_backward(bool profile) {
+std::unique_ptr<Commands> Executor::recorded_backward(bool profile, const Watcher& watcher) {
   Recorder recorder(*device_, profile);
+  backward_sections_.clear();
   for (int root : backward_plan_.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
   const Slice seed = gradient_operand(loss_.id()).slice;
   if (loss_scale_)
@@ -345,11 +354,12 @@ void Executor::record_backward(bool profile) {
     recorder.expect_work(needs_[step.node].backward_flop);
     node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
     recorder.end_section();
-    if (!gradient_done_) continue;
+    watch(recorder, watcher, node, s, dx);
+    if (!gradient_done_ || watcher) continue;
     for (const std::string& group : gradients_done_after(s))
       recorder.host_step([this, group] { gradient_done_(group); });
   }
-  backward_ = recorder.finish();
+  return recorder.finish();
 }
 
 /// Groups of parameters that this step of backward is the last to add to.

@@ -11,7 +11,9 @@ Commands::Commands(const Device& device) : device_(&device) {
   check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "vkCreateCommandPool");
   VkFenceCreateInfo fence{};
   fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-  check(vkCreateFence(device.handle(), &fence, nullptr, &fence_), "vkCreateFence");
+  const VkResult made = vkCreateFence(device.handle(), &fence, nullptr, &fence_);
+  if (made != VK_SUCCESS) vkDestroyCommandPool(device.handle(), pool_, nullptr);
+  check(made, "vkCreateFence");
 }
 
 Commands::~Commands() {
@@ -42,6 +44,16 @@ void Commands::wait() const {
 }
 
 RunTimes Commands::run() const {
+  try {
+    return submit_all();
+  } catch (...) {
+    // What was submitted before may be under way, and who catches this may free what it uses.
+    vkQueueWaitIdle(device_->queue());
+    throw;
+  }
+}
+
+RunTimes Commands::submit_all() const {
   RunTimes times;
   times.begin = std::chrono::steady_clock::now();
   auto step = host_steps_.begin();

@@ -77,7 +77,7 @@ class Commands {
   Commands& operator=(const Commands&) = delete;
 
   /// Submits every chunk in order and waits for the last one, and for those before a host step. What a host
-  /// step throws ends it.
+  /// step throws ends it. Nothing is under way when it returns or throws.
   RunTimes run() const;
   /// Of the last run, in order of recording; empty unless recorded with timestamps.
   std::vector<CommandTime> command_times() const;
@@ -105,6 +105,7 @@ class Commands {
     size_t chunks;  ///< that must be done before
     std::function<void()> run;
   };
+  RunTimes submit_all() const;
   void submit(VkCommandBuffer buffer, VkFence fence) const;
   void wait() const;
   std::vector<HostStep> host_steps_;

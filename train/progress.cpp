@@ -35,6 +35,7 @@ std::string progress_line(const StepRecord& record, uint64_t total, double secon
     add_known("IoU", record.held_out->iou);
     add_known("depth r", record.held_out->depth_r);
   }
+  if (record.skipped_steps > 0) line += fmt::format("  {} skipped", record.skipped_steps);
   if (record.shared) line += fmt::format("  efficiency {:.0f} %", 100 * record.shared->efficiency);
   const double rate = seconds_per_step > 0 ? record.batch / seconds_per_step : 0;
   const uint64_t left = total > record.step ? total - record.step : 0;

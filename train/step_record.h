@@ -42,6 +42,8 @@ struct StepRecord {
   std::optional<HeldOutScores> held_out;      ///< where it was measured
   std::map<std::string, NetworkNorms> norms;  ///< of the networks that learn, where they were taken
   std::optional<SharedStep> shared;           ///< where there are several processes
+  bool skipped = false;        ///< it changed nothing, as something was not finite; a loss may be so
+  uint64_t skipped_steps = 0;  ///< of the run so far, this one included
 };
 
 }  // namespace vkopple

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +20,7 @@
 namespace vkopple {
 namespace {
 
+// Whoever sets the system's clock changes nothing here.
 using Clock = std::chrono::steady_clock;
 static_assert(Clock::is_steady);
 
@@ -38,14 +38,6 @@ double seconds_since(Clock::time_point start) {
 
 /// 32 bits made of all 64: what dropout's random numbers take.
 uint32_t folded(uint64_t number) { return static_cast<uint32_t>(number ^ (number >> 32)); }
-
-void require_finite_losses(const Losses& losses, uint64_t step) {
-  for (const auto& [name, loss] : losses)
-    if (!std::isfinite(loss))
-      throw Error(
-          fmt::format("step {}: the loss {} is {}; the checkpoints before stay, try a smaller learning rate",
-                      step, name, loss));
-}
 
 std::string stage_text(const PlannedStage& planned) {
   const TrainingStage& s = planned.stage;
@@ -69,10 +61,6 @@ struct Trainer::Stage {
 struct Trainer::Diary {
   TrainingLog log;
   TrainingBoard board;
-      keeper_(options_.folder, options_.keep, resume && leads(), *options_.files,
-              [this](const auto& path, const auto& more) {
-                save_checkpoint(path, store_, config_, position_, more, *options_.files);
-              }),
 };
 
 Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bool resume)
@@ -81,6 +69,10 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
       options_(std::move(options)),
       plan_(config_, options_.steps),
       store_(device, config_.model, config_.training.precision),
+      keeper_(options_.folder, options_.keep, resume && leads(), *options_.files,
+              [this](const auto& path, const auto& more) {
+                save_checkpoint(path, store_, config_, position_, more, *options_.files);
+              }),
       saved_at_(Clock::now()) {
   if (resume) {
     const bool latest = options_.checkpoint.empty() || options_.checkpoint == options_.folder.latest();
@@ -143,16 +135,31 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
                     .learning_rate = s.learning_rate_at(step - stage.planned->begin)};
   stage.training->set_learning_rate(record.learning_rate);
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
-  require_finite_losses(record.losses, step + 1);
-  store_.count_step(s.hypotheses == Hypotheses::kBackground);
+  record.skipped = stage.training->skipped();
+  if (record.skipped) {
+    ++position_.skipped;
+    ++position_.skipped_in_a_row;
+  } else {
+    position_.skipped_in_a_row = 0;
+    store_.count_step(s.hypotheses == Hypotheses::kBackground);
+  }
+  record.skipped_steps = position_.skipped;
   record.seconds = seconds_since(start);
   if (several(options_.peers)) record.shared = shared(stage.training->exchange_seconds(), record.seconds);
   position_.step = step + 1;
   position_.stage = plan_.stage_of(step);
   position_.stage_step = position_.step - stage.planned->begin;
   record.step = position_.step;
-  if (leads() && position_.step % kNormsEvery == 0) record.norms = stage.training->norms();
+  if (leads() && !record.skipped && position_.step % kNormsEvery == 0) record.norms = stage.training->norms();
   return record;
+}
+
+void Trainer::require_progress(Stage& stage) const {
+  if (position_.skipped_in_a_row < options_.max_bad_steps) return;
+  throw Error(fmt::format(
+      "step {}: {} steps in a row were skipped, as a loss or a gradient was not finite: {}; the checkpoints "
+      "before stay, try a smaller learning rate",
+      position_.step, position_.skipped_in_a_row, stage.training->diagnosis()));
 }
 
 void Trainer::measure(Stage& stage, Diary& diary, StepRecord& record) {
@@ -199,6 +206,7 @@ bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop)
     Stage stage = open_stage(planned);
     if (leads()) {
       options_.folder.create();
+      if (!diary) options_.folder.remove_remains();
       if (!diary)
         diary.emplace(Diary{.log = TrainingLog(options_.folder.log(), position_.step, *options_.files),
                             .board = TrainingBoard(options_.folder.path(), position_.step, *options_.files)});
@@ -206,7 +214,6 @@ bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop)
       if (device_->caps().cpu())
         listener.say("its first step compiles kernels: a minute or two the first time, seconds from then on");
     }
-      if (!diary) options_.folder.remove_remains();
     while (position_.step < planned.end && !stopped) {
       Trace* const trace = profiler_ ? profiler_->begin_step() : nullptr;
       {
@@ -218,14 +225,15 @@ bool Trainer::run(TrainingListener& listener, const std::function<bool()>& stop)
           diary->log.add(record);
           diary->board.add(record);
           listener.show(record);
+          if (record.held_out) keeper_.save_if_best(*record.held_out);
         }
+        require_progress(stage);
         save_if_due();
       }
       if (trace != nullptr) profiler_->end_step();
       stopped = any(options_.peers, stop());
     }
   }
-          if (record.held_out) keeper_.save_if_best(*record.held_out);
   if (diary) diary->board.flush();
   if (profiler_) profiler_->finish();
   save(false);

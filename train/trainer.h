@@ -59,7 +59,8 @@ class Trainer {
   Trainer& operator=(const Trainer&) = delete;
 
   /// Trains until the plan's end, or until `stop` says so after a step, and saves. Whether it came to the end.
-  /// On failure the checkpoints written before stay.
+  /// On failure the checkpoints written before stay. Steps that are not finite are skipped and counted; Error
+  /// with a diagnosis where there are too many in a row.
   bool run(TrainingListener& listener, const std::function<bool()>& stop);
 
   const TrainingPosition& position() const { return position_; }
@@ -71,6 +72,7 @@ class Trainer {
 
   Stage open_stage(const PlannedStage& planned);
   StepRecord train_step(Stage& stage, Trace* trace);
+  void require_progress(Stage& stage) const;
   /// In held-out rooms, where it is time to.
   void measure(Stage& stage, Diary& diary, StepRecord& record);
   bool leads() const { return options_.peers == nullptr || options_.peers->rank() == 0; }

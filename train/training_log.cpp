@@ -61,6 +61,7 @@ nlohmann::ordered_json to_json(const StepRecord& record) {
     json["exchange_seconds"] = record.shared->exchange_seconds;
     json["efficiency"] = record.shared->efficiency;
   }
+  if (record.skipped) json["skipped_steps"] = record.skipped_steps;
   return json;
 }
 

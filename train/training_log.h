@@ -10,7 +10,8 @@
 namespace vkopple {
 
 /// {"step", "stage", "losses": {...}, "seconds", "data_seconds"}, of "ari_fg", "iou" and "depth_r" what was
-/// measured, and "processes", "exchange_seconds", "efficiency" where there are several processes.
+/// measured, and "processes", "exchange_seconds", "efficiency" where there are several processes. A step that
+/// was skipped has "skipped_steps", and null for a loss that was not finite.
 nlohmann::ordered_json to_json(const StepRecord& record);
 
 /// The log of a run: such an object a line and step. Throws Error naming the file.

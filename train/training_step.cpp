@@ -30,6 +30,12 @@ double clip_of(const TrainingConfig& training, Network network) {
   return training.clip.object;
 }
 
+bool is_averages(const std::string& group) { return group.ends_with("/averages"); }
+
+bool are_finite(const Losses& losses) {
+  return std::all_of(losses.begin(), losses.end(), [](const auto& item) { return std::isfinite(item.second); });
+}
+
 double norm(const std::vector<float>& values) {
   double sum = 0;
   for (const float v : values) sum += double{v} * double{v};
@@ -85,7 +91,7 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
   }
   if (!config.training.sync_batch_norm)
     for (const auto& [group, members] : graph_.states())
-      if (group.ends_with("/averages")) averages_.push_back(graph_.group(group));
+      if (is_averages(group)) averages_.push_back(graph_.group(group));
   ExecutorOptions options{.groups = std::move(groups),
                           .loss = model_->loss(),
                           .trained = learning_,
@@ -101,8 +107,21 @@ TrainingStep::TrainingStep(const Device& device, const Config& config, const Tra
   // A store that has not been trained in mixed precision yet holds zeros.
   if (loss_scale_ && executor_->read(loss_scale_)[LossScale::kScale] == 0)
     executor_->write(loss_scale_, std::vector<float>{kLossScale.initial, 0, 0, 0});
+  prepare_checks(device);
   model_->feed_constants(*executor_);
   set_learning_rate(stage.learning_rate);
+}
+
+void TrainingStep::prepare_checks(const Device& device) {
+  std::vector<Slice> averages;
+  for (const auto& [group, members] : graph_.states())
+    if (is_averages(group)) averages.push_back(executor_->slice(graph_.group(group)));
+  averages_before_.emplace(device, averages);
+  std::vector<Slice> checked = averages;
+  // Those of a scaled loss are looked at, and may overflow, where the scale is adapted.
+  if (!loss_scale_)
+    for (const std::string& group : learning_) checked.push_back(executor_->slice(graph_.gradient(group)));
+  check_.emplace(device, checked);
 }
 
 void TrainingStep::set_learning_rate(double rate) {
@@ -118,6 +137,7 @@ Losses TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step,
     model_->feed(*executor_, triplets);
   }
   const double exchanged = several(peers_) ? peers_->seconds() : 0;
+  averages_before_->keep();
   executor_->forward();
   executor_->backward();
   if (several(peers_)) {
@@ -125,15 +145,14 @@ Losses TrainingStep::run(const Triplets& triplets, uint32_t seed, uint32_t step,
     finish_gradients();
     average_over_peers(averages_);
   }
-  executor_->update();
-  if (loss_scale_) require_finite_gradients();
   Losses losses;
   {
     const Trace::Span span(trace, "read losses");
     losses = read_losses();
   }
+  update_unless_bad(losses);
   if (several(peers_)) exchange_seconds_ = peers_->seconds() - exchanged - exchange_->hidden_seconds();
-  if (trace != nullptr)
+  if (trace != nullptr && !skipped_)  // of a pass that never ran there are no times
     for (const PassProfile& pass : executor_->passes()) trace->add_pass(pass);
   return losses;
 }
@@ -175,14 +194,28 @@ Losses TrainingStep::read_losses() {
   return losses;
 }
 
+/// Every process comes to the same: all have the same losses, gradients and averages by now.
+void TrainingStep::update_unless_bad(const Losses& losses) {
+  skipped_ = !are_finite(losses) || !check_->all_finite();
+  if (!skipped_) {
+    executor_->update();
+    skipped_ = overflowed_at_smallest_scale();
+  }
+  if (skipped_) averages_before_->restore();
+}
+
 /// Halving the scale has an end: gradients that are not finite even so are no matter of float16.
-void TrainingStep::require_finite_gradients() const {
+bool TrainingStep::overflowed_at_smallest_scale() const {
+  if (!loss_scale_) return false;
   const auto state = executor_->read(loss_scale_);
-  if (state[LossScale::kFactor] == 0 && state[LossScale::kScale] == kLossScale.smallest)
-    throw Error(
-        fmt::format("gradients are not finite however little the loss is scaled, {} steps were skipped; try a "
-                    "smaller learning rate, or --precision float32",
-                    state[LossScale::kSkipped]));
+  return state[LossScale::kFactor] == 0 && state[LossScale::kScale] == kLossScale.smallest;
+}
+
+std::string TrainingStep::diagnosis() {
+  const auto found = executor_->find_not_finite();
+  averages_before_->restore();
+  if (found) return "the first that gave a number that is not finite was " + *found;
+  return several(peers_) ? "in this process everything was finite" : "run again, everything was finite";
 }
 
 }  // namespace vkopple

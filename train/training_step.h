@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "graph/finite_check.h"
+#include "graph/state_backup.h"
 #include "models/config.h"
 #include "models/opple.h"
 #include "train/parallel/gradient_exchange.h"
@@ -17,12 +19,12 @@ class Trace;
 
 /// The training step of one stage on a device: the model's graph for the stage's networks and hypotheses, with
 /// Adam for the networks that learn. In mixed precision the loss is scaled, and a step whose gradients overflow
-/// changes nothing but the scale (graph/ops/loss_scale.h). Weights, averages and optimiser state live in
-/// `groups`, which stages share.
-/// With peers each process takes its part of the stage's batch, and gradients, losses and running averages are
-/// the means over all: what one process would get of the whole batch, but for rounding, for dropout's masks,
-/// and for statistics of batch norms, which are each part's own unless the configuration says sync_batch_norm
-/// (docs/parallel.md).
+/// changes nothing but the scale (graph/ops/loss_scale.h). A step of which a loss, a gradient or a running
+/// average is not finite, however the loss is scaled, is skipped: it changes nothing. Weights, averages and
+/// optimiser state live in `groups`, which stages share. With peers each process takes its part of the stage's
+/// batch, and gradients, losses and running averages are the means over all: what one process would get of the
+/// whole batch, but for rounding, for dropout's masks, and for statistics of batch norms, which are each part's
+/// own unless the configuration says sync_batch_norm (docs/parallel.md).
 class TrainingStep {
  public:
   TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
@@ -34,6 +36,12 @@ class TrainingStep {
   /// Of the last run: seconds that this process waited in exchanges with its peers.
   double exchange_seconds() const { return exchange_seconds_; }
   int64_t batch() const { return model_->options().batch; }
+
+  /// Whether the last run was skipped.
+  bool skipped() const { return skipped_; }
+  /// Of the last run, which was skipped: what was first to be not finite, in words. Slow. All processes must
+  /// call it together.
+  std::string diagnosis();
 
   /// Of the runs that follow; the stage's until then.
   void set_learning_rate(double rate);
@@ -51,7 +59,9 @@ class TrainingStep {
   void finish_gradients();
   void average_over_peers(const std::vector<Value>& values);
   Losses read_losses();
-  void require_finite_gradients() const;
+  void prepare_checks(const Device& device);
+  void update_unless_bad(const Losses& losses);
+  bool overflowed_at_smallest_scale() const;
 
   Peers* peers_;
   Graph graph_;
@@ -65,6 +75,9 @@ class TrainingStep {
   bool exchanges_late_ = false;  ///< gradients are exchanged after backward, not during it
   double exchange_seconds_ = 0;
   std::unique_ptr<Executor> executor_;
+  std::optional<StateBackup> averages_before_;  ///< of the last run
+  std::optional<FiniteCheck> check_;  ///< of running averages and, unless the loss is scaled, gradients
+  bool skipped_ = false;
 };
 
 }  // namespace vkopple

@@ -4,19 +4,12 @@
 
 #include <cmath>
 
-#include "graph/kernels/words.h"
+#include "graph/finite_check.h"
 
 namespace vkopple {
 namespace {
 
 enum Input : size_t { kState, kFound, kGradients };
-
-/// Vectors that one invocation looks at.
-constexpr uint32_t kVectorsEach = 16;
-
-struct LookPush {
-  uint32_t vectors;
-};
 
 struct DecidePush {
   float smallest;
@@ -49,11 +42,8 @@ Needs LossScale::needs(std::span<const TensorSpec>, const Caps&) const { return 
 
 void LossScale::record_forward(Recorder& recorder, const Forward& io) const {
   recorder.fill(io.x[kFound].slice);
-  for (size_t i = kGradients; i < io.x.size(); ++i) {
-    const LookPush push{words(io.x[i]) / 4};
-    recorder.dispatch_flat("loss_scale.look", (push.vectors + kVectorsEach - 1) / kVectorsEach,
-                           {io.x[i].slice, io.x[kFound].slice}, push);
-  }
+  for (size_t i = kGradients; i < io.x.size(); ++i)
+    record_finite_check(recorder, io.x[i].slice, io.x[kFound].slice);
   const DecidePush push{options_.smallest, options_.largest, options_.interval};
   recorder.dispatch_flat("loss_scale.decide", 1, {io.x[kFound].slice, io.x[kState].slice}, push);
 }

@@ -38,6 +38,13 @@ TEST(Progress, ALineTellsAll) {
             "100/100 all  total 0.25  image 0.5  ARI-fg 0.125  depth r 0.500  2 triplets/s  0:00 left");
 }
 
+TEST(Progress, SkippedStepsAreCounted) {
+  StepRecord later = record(10);
+  later.skipped_steps = 3;
+  EXPECT_EQ(progress_line(later, 100, 2),
+            "10/100 all  total 0.25  image 0.5  3 skipped  2 triplets/s  3:00 left");
+}
+
 TEST(Progress, StageAndScoresMayHaveColours) {
   StepRecord measured = record(100);
   measured.held_out = {.ari_fg = {}, .iou = 0.25, .depth_r = 0.5};

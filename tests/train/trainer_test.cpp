@@ -14,10 +14,13 @@
 #include "tests/support/small_scene.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
+#include "tests/support/tiny_run.h"
 #include "train/atomic_file.h"
 #include "train/formats/fit_scene.h"
 #include "train/formats/scene_reader.h"
+#include "train/run_score.h"
 #include "train/safetensors.h"
+#include "train/tensor_checksums.h"
 
 namespace vkopple {
 namespace {
@@ -196,30 +199,89 @@ TEST_F(Trained, AnotherConfigurationDoesNotResume) {
                {"latest.safetensors", "training.stages[1].learning_rate", "0.0003", "0.5"});
 }
 
-TEST(Trainer, ALossThatIsNoNumberStopsAndKeepsTheCheckpoint) {
-  const TempFolder folder;
-  Config config = staged();
-  config.training.stages.erase(config.training.stages.begin());
-  config.training.stages[0].learning_rate = 1;
-  config.training.stages[0].batch = 1;
-  EXPECT_TRUE(train(folder.path(), 2, 2, false, config));
-  // Weights that are numbers, and whose products are none.
-  const RunFolder run(folder.path());
-  std::map<std::string, std::string> metadata;
-  std::map<std::string, StoredTensor> tensors;
-  {
-    const SafetensorsFile file(run.latest());
-    metadata = file.metadata();
-    for (const auto& name : file.names()) tensors.emplace(name, file.read(name));
+/// Of a run whose weights are numbers, and their products none.
+class Diverged : public testing::Test {
+ protected:
+  Diverged() {
+    EXPECT_TRUE(run_.train());
+    std::map<std::string, std::string> metadata;
+    std::map<std::string, StoredTensor> tensors;
+    {
+      const SafetensorsFile file(folder().latest());
+      metadata = without_checksums(file.metadata());
+      for (const auto& name : file.names()) tensors.emplace(name, file.read(name));
+    }
+    for (auto& [name, tensor] : tensors)
+      if (name.ends_with("outc.conv.weight") && !name.starts_with("adam/"))
+        tensor = StoredTensor::of(tensor.shape, std::vector<float>(tensor.bytes.size() / 4, 3e38F));
+    write_safetensors(folder().latest(), metadata, tensors);
+    before_ = learned();
+    run_.steps = 6;
   }
-  for (auto& [name, tensor] : tensors)
-    if (name.ends_with("outc.conv.weight") && !name.starts_with("adam/"))
-      tensor = StoredTensor::of(tensor.shape, std::vector<float>(tensor.bytes.size() / 4, 3e38F));
-  write_safetensors(run.latest(), metadata, tensors);
-  const auto before = bytes(run.latest());
-  expect_error([&] { train(folder.path(), 4, 4, true, config); }, {"step 3", "loss"});
-  EXPECT_TRUE(bytes(run.latest()) == before);
-  EXPECT_EQ(log_lines(run).size(), 2U);
+
+  RunFolder folder() const { return RunFolder(run_.folder); }
+  /// Everything in the latest checkpoint but its metadata.
+  std::map<std::string, std::vector<std::byte>> learned() const {
+    const SafetensorsFile file(folder().latest());
+    std::map<std::string, std::vector<std::byte>> all;
+    for (const auto& name : file.names()) all[name] = file.read(name).bytes;
+    return all;
+  }
+
+  TempFolder temporary_;
+  test::TinyRun run_{.folder = temporary_ / "run", .steps = 2};
+  std::map<std::string, std::vector<std::byte>> before_;
+};
+
+TEST_F(Diverged, StepsAreSkippedAndCountedAndChangeNothing) {
+  EXPECT_TRUE(run_.train());
+  EXPECT_TRUE(learned() == before_);
+  const TrainingPosition position = read_checkpoint_header(folder().latest()).position;
+  EXPECT_EQ(position.step, 6U);
+  EXPECT_EQ(position.skipped, 4U);
+  EXPECT_EQ(position.skipped_in_a_row, 4U);
+  const auto lines = log_lines(folder());
+  ASSERT_EQ(lines.size(), 6U);
+  EXPECT_FALSE(lines[1].contains("skipped_steps"));
+  for (size_t i = 2; i < 6; ++i) EXPECT_EQ(lines[i].at("skipped_steps"), i - 1);
+}
+
+TEST_F(Diverged, TooManyInARowStopWithADiagnosis) {
+  run_.max_bad_steps = 3;
+  expect_error([&] { run_.train(); },
+               {"step 5: 3 steps in a row", "not finite was", "depth", " in forward", "smaller learning rate"});
+  EXPECT_TRUE(learned() == before_);
+  EXPECT_EQ(log_lines(folder()).size(), 5U);
+  // A checkpoint of the fourth step is there, and one more is too many again.
+  EXPECT_EQ(read_checkpoint_header(folder().latest()).position.skipped_in_a_row, 2U);
+  expect_error([&] { run_.train(); }, {"step 5: 3 steps in a row"});
+}
+
+TEST_F(Diverged, ResumedItCountsTheSame) {
+  test::TinyRun other = run_;
+  other.folder = temporary_ / "other";
+  std::filesystem::copy(run_.folder, other.folder);
+  EXPECT_TRUE(run_.train());
+  uint64_t shown = 0;
+  EXPECT_FALSE(other.train(system_files(), &shown, [&] { return shown == 2; }));
+  EXPECT_TRUE(other.train());
+  EXPECT_TRUE(bytes(RunFolder(other.folder).latest()) == bytes(folder().latest()));
+}
+
+TEST(Trainer, KeepsTheLastNumberedCheckpointsAndTheBest) {
+  const TempFolder folder;
+  const test::TinyRun run{.folder = folder / "run", .steps = 5, .keep = 2, .eval_every = 2};
+  const RunFolder left(run.folder);
+  uint64_t shown = 0;
+  EXPECT_FALSE(run.train(system_files(), &shown, [&] { return shown == 2; }));
+  ASSERT_TRUE(std::filesystem::exists(left.best()));  // the first that was measured
+  EXPECT_TRUE(run.train());
+  EXPECT_EQ(left.numbered_steps(), (std::vector<uint64_t>{4, 5}));
+  const auto lines = log_lines(left);
+  const double second = lines[1].at("depth_r"), fourth = lines[3].at("depth_r");
+  EXPECT_EQ(read_checkpoint_header(left.best()).position.step, fourth > second ? 4U : 2U);
+  EXPECT_EQ(SafetensorsFile(left.best()).metadata().at("score"),
+            to_text(RunScore{false, std::max(second, fourth)}));
 }
 
 TEST(Trainer, NothingIsLeftWhereTheDataAreWrong) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -47,6 +49,18 @@ TEST(TrainingLog, OneObjectAStep) {
   EXPECT_EQ(all[1].at("depth_r"), 0.75);
   EXPECT_EQ(all[1].at("iou"), 0.25);
   EXPECT_FALSE(all[1].contains("ari_fg"));
+}
+
+TEST(TrainingLog, ASkippedStepIsCounted) {
+  StepRecord skipped = record(5);
+  skipped.skipped = true;
+  skipped.skipped_steps = 2;
+  skipped.losses["image"] = std::numeric_limits<double>::quiet_NaN();
+  const auto json = nlohmann::json::parse(to_json(skipped).dump());
+  EXPECT_EQ(json.at("skipped_steps"), 2);
+  EXPECT_TRUE(json.at("losses").at("image").is_null());
+  skipped.skipped = false;
+  EXPECT_FALSE(to_json(skipped).contains("skipped_steps"));
 }
 
 TEST(TrainingLog, GoesOnAfterTheCheckpointsStep) {

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "tests/support/test_device.h"
@@ -85,6 +89,40 @@ TEST_F(TrainingStepTest, ARateOfZeroChangesNoWeight) {
   run(training);
   for (const auto& [network, of] : training.norms())
     EXPECT_NE(of.weights, before.at(network).weights) << network;
+}
+
+TEST_F(TrainingStepTest, WhatIsNotFiniteIsSkippedAndChangesNothing) {
+  TrainingStep training = make();
+  const auto everything = [&] {
+    std::vector<std::vector<float>> all;
+    for (const auto* entries : {&store_.layout().weights(), &store_.layout().optimiser()})
+      for (const LayoutEntry& entry : *entries) all.push_back(store_.read(entry));
+    return all;
+  };
+  run(training);
+  EXPECT_FALSE(training.skipped());
+  EXPECT_EQ(training.executor().find_not_finite(), std::nullopt);
+  // A bias of the object network that is no number, in the very network where it is found first.
+  const auto& weights = store_.layout().weights();
+  const auto bias = std::find_if(weights.begin(), weights.end(), [](const LayoutEntry& e) {
+    return e.name.ends_with(".bias") && e.name.find("seg_net") != std::string::npos;
+  });
+  ASSERT_NE(bias, weights.end());
+  const auto good = store_.read(*bias);
+  store_.write(*bias, std::vector<float>(good.size(), std::numeric_limits<float>::infinity()));
+  const auto before = everything();
+  run(training);
+  EXPECT_TRUE(training.skipped());
+  EXPECT_EQ(everything(), before);
+  const std::string why = training.diagnosis();
+  EXPECT_NE(why.find("not finite was "), std::string::npos) << why;
+  EXPECT_NE(why.find("object"), std::string::npos) << why;
+  EXPECT_NE(why.find(" in forward"), std::string::npos) << why;
+  EXPECT_EQ(everything(), before);
+  store_.write(*bias, good);
+  run(training);
+  EXPECT_FALSE(training.skipped());
+  EXPECT_NE(everything(), before);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ struct Options {
   uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
   uint64_t keep = TrainerOptions{RunFolder("")}.keep;
   uint64_t eval_every = TrainerOptions{RunFolder("")}.eval_every;
+  uint64_t max_bad_steps = TrainerOptions{RunFolder("")}.max_bad_steps;
   std::string profile;
   int profiled_steps = TrainerOptions{RunFolder("")}.profiled_steps;
   int data_threads = TrainerOptions{RunFolder("")}.data_threads;
@@ -144,8 +145,9 @@ void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
   TrainerOptions trainer_options{.folder = RunFolder(o.out)};
   trainer_options.steps = o.steps;
   trainer_options.checkpoint_every = o.checkpoint_every;
-  trainer_options.eval_every = o.eval_every;
   trainer_options.keep = o.keep;
+  trainer_options.eval_every = o.eval_every;
+  trainer_options.max_bad_steps = o.max_bad_steps;
   trainer_options.profile = o.profile;
   trainer_options.profiled_steps = o.profiled_steps;
   trainer_options.data_threads = o.data_threads;
@@ -200,22 +202,28 @@ void add_train(CLI::App& app) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--checkpoint-every", o->checkpoint_every,
-                   "Steps between checkpoints step-NNNNNN.safetensors, all of which are kept; 0: none. "
+                   "Steps between checkpoints step-NNNNNN.safetensors; 0: none. "
                    "latest.safetensors is written then, every ten minutes, and at the end")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  command
-      ->add_option("--eval-every", o->eval_every,
   command
       ->add_option("--keep", o->keep,
                    "Numbered checkpoints that stay, the last ones; 0: all. best.safetensors and "
                    "latest.safetensors stay beside them")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--eval-every", o->eval_every,
                    "Steps between measurements in unseen rooms: of depth, and of masks once objects are "
                    "learned; 0: none")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--max-bad-steps", o->max_bad_steps,
+                   "Steps in a row that may be skipped, as a loss or a gradient is not finite; at so many "
+                   "training stops and says what was first not to be")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
   command->add_option(
       "--profile", o->profile,
       "Write a trace of a step, for chrome://tracing or Perfetto: every dispatch on the device, "

@@ -9,7 +9,10 @@ namespace vkopple {
 void TrainingBoard::add(const StepRecord& record) {
   if (record.stage != last_.stage) flush();
   last_ = record;
-  for (const auto& [name, loss] : record.losses) sums_[name] += loss;
+  if (!record.skipped) {
+    for (const auto& [name, loss] : record.losses) sums_[name] += loss;
+    ++good_;
+  }
   seconds_ += record.seconds;
   data_seconds_ += record.data_seconds;
   if (++steps_ == kSteps) flush();
@@ -19,7 +22,8 @@ void TrainingBoard::add(const StepRecord& record) {
 void TrainingBoard::flush() {
   if (steps_ == 0) return;
   EventFile::Scalars scalars{{"learning_rate", last_.learning_rate}};
-  for (const auto& [name, sum] : sums_) scalars["loss/" + name] = sum / steps_;
+  for (const auto& [name, sum] : sums_) scalars["loss/" + name] = sum / good_;
+  if (last_.skipped_steps > 0) scalars["skipped_steps"] = static_cast<double>(last_.skipped_steps);
   if (seconds_ > 0) {
     scalars["speed/triplets_per_second"] = last_.batch * steps_ / seconds_;
     scalars["speed/data_share"] = data_seconds_ / seconds_;
@@ -27,7 +31,7 @@ void TrainingBoard::flush() {
   file_.add(last_.step, scalars);
   sums_.clear();
   seconds_ = data_seconds_ = 0;
-  steps_ = 0;
+  steps_ = good_ = 0;
 }
 
 void TrainingBoard::add_measured(const StepRecord& record) {

@@ -12,9 +12,10 @@
 namespace vkopple {
 
 /// Shows a run in TensorBoard, beside its log: means over kSteps steps of every loss ("loss/…"), of
-/// "speed/triplets_per_second" and "speed/data_share" (of a step's time), and "learning_rate"; where they were
-/// taken, "weight_norm/…" and "gradient_norm/…" by network, "held_out/…" scores, and pictures of the same few
-/// held-out images.
+/// "speed/triplets_per_second" and "speed/data_share" (of a step's time), and "learning_rate". Steps that were
+/// skipped are left out of the means, and counted in "skipped_steps" from the first on. Where they were taken,
+/// "weight_norm/…" and "gradient_norm/…" by network, "held_out/…" scores, and pictures of the same few held-out
+/// images.
 class TrainingBoard {
  public:
   static constexpr int kSteps = 10;
@@ -36,7 +37,8 @@ class TrainingBoard {
   StepRecord last_;
   std::map<std::string, double> sums_;  ///< of losses
   double seconds_ = 0, data_seconds_ = 0;
-  int steps_ = 0;  ///< in the sums
+  int steps_ = 0;  ///< since the last flush
+  int good_ = 0;   ///< of these, not skipped: those in the sums
 };
 
 }  // namespace vkopple

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 
 #include "tests/support/events.h"
@@ -52,6 +53,25 @@ TEST_F(TrainingBoardTest, StagesAreNotMixedAndTheRestIsFlushed) {
   board_.flush();
   board_.flush();  // nothing is left
   EXPECT_EQ(points().at("loss/total"), (std::map<int64_t, float>{{2, 4.0F}, {3, 7.0F}}));
+}
+
+TEST_F(TrainingBoardTest, SkippedStepsAreCountedAndLeftOutOfMeans) {
+  for (uint64_t step = 1; step <= 20; ++step) {
+    StepRecord one = record(step, 2);
+    one.skipped = step > 16;
+    if (one.skipped) one.losses["total"] = std::numeric_limits<double>::quiet_NaN();
+    one.skipped_steps = step > 16 ? step - 16 : 0;
+    board_.add(one);
+  }
+  for (uint64_t step = 21; step <= 30; ++step) {
+    StepRecord one = record(step, 0);
+    one.skipped = true;
+    one.skipped_steps = step - 16;
+    board_.add(one);
+  }
+  const Points all = points();
+  EXPECT_EQ(all.at("loss/total"), (std::map<int64_t, float>{{10, 2.0F}, {20, 2.0F}}));
+  EXPECT_EQ(all.at("skipped_steps"), (std::map<int64_t, float>{{20, 4.0F}, {30, 14.0F}}));
 }
 
 TEST_F(TrainingBoardTest, WhatWasMeasuredIsThereAtOnce) {

@@ -71,6 +71,37 @@ TEST_F(TrainCommand, TrainsAndGoesOn) {
   EXPECT_NE(third.errors.find("has its 2 steps already"), std::string::npos) << third.errors;
 }
 
+TEST_F(TrainCommand, GoesOnFromTheOneBeforeWhereTheLatestIsDamaged) {
+  const std::vector<std::string> start{config(),  "--data",
+                                       "rooms:1", "--out",
+                                       out(),     "--steps",
+                                       "3",       "--batch",
+                                       "2",       "--checkpoint-every",
+                                       "1",       "--keep",
+                                       "2",       "--eval-every",
+                                       "0"};
+  expect_success(train(start));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run" / "step-000001.safetensors"));
+  const std::filesystem::path latest = folder_ / "run" / "latest.safetensors";
+  const std::string third = folder_ / "run" / "step-000003.safetensors";
+  const auto whole = read_file(latest, size_t{64} << 20);
+  auto bytes = whole;
+  bytes[bytes.size() - 5] ^= std::byte{1};
+  write_file(latest, bytes);
+  write_file(third, "nonsense");
+  const auto outcome =
+      train({"--out", out(), "--resume", "--steps", "3", "--checkpoint-every", "1", "--quiet"});
+  expect_success(outcome);
+  for (const std::string part : {"latest.safetensors: tensor ", "is damaged", "step-000003.safetensors",
+                                 "going on from", "step-000002.safetensors, after step 2"})
+    EXPECT_NE(outcome.errors.find(part), std::string::npos) << part << " is not in: " << outcome.errors;
+  EXPECT_TRUE(read_file(latest, size_t{64} << 20) == whole);
+  for (const std::string name : {"latest", "step-000002", "step-000003"})
+    write_file(folder_ / "run" / (name + ".safetensors"), "nonsense");
+  expect_failure(train({"--out", out(), "--resume"}), 1,
+                 {"no checkpoint is left to go on from", "latest.safetensors", "step-000002.safetensors"});
+}
+
 TEST_F(TrainCommand, IsQuietWhereAsked) {
   const auto outcome = train({config(), "--data", "rooms:1", "--out", out(), "--steps", "2", "--batch", "2",
                               "--eval-every", "0", "--quiet"});
@@ -142,7 +173,10 @@ TEST_F(TrainCommand, RefusesWhatCannotBe) {
   expect_failure(train({config(), "--data", folder_ / "absent", "--out", out()}), 1, {"absent"});
   expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--steps", "0"}), 2, {"--steps"});
   expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--batch", "0"}), 2, {"--batch"});
-  for (const std::string option : {"--steps", "--seed", "--checkpoint-every", "--eval-every"})
+  expect_failure(train({config(), "--data", "rooms:1", "--out", out(), "--max-bad-steps", "0"}), 2,
+                 {"--max-bad-steps"});
+  for (const std::string option :
+       {"--steps", "--seed", "--checkpoint-every", "--eval-every", "--keep", "--max-bad-steps"})
     expect_failure(train({config(), "--data", "rooms:1", "--out", out(), option, "-1"}), 2, {option});
   expect_failure(train({"--out", out(), "--resume"}), 2, {out(), "latest.safetensors"});
   EXPECT_FALSE(std::filesystem::exists(out()));

@@ -118,97 +118,95 @@ class Faults : public testing::Test {
   static inline uint64_t injected_ = 0;
 };
 
-/// Two checkpoints as files hold them, of which the second is to replace the first.
-class Replacing : public Faults {
- protected:
-  void SetUp() override {
-    write_safetensors(target(), content(1).first, content(1).second);
-    before_ = bytes(target());
+/// Two checkpoints as files hold them, of which the second is to replace the first in a folder.
+class Replacing {
+ public:
+  Replacing(const TempFolder& folder, const RunFolder& run)
+      : folder_(folder), target_(folder / "latest.safetensors"), second_(run.numbered(3)) {
+    for (const auto& name : second_.names()) tensors_.emplace(name, second_.read(name));
+    before_ = bytes(run.numbered(2));
     FaultyFiles files;
     write(files);
-    after_ = bytes(target());
+    after_ = bytes(target_);
     calls_ = files.calls();
-    ASSERT_NE(before_, after_);
-  }
-  std::filesystem::path target() const { return folder_ / "latest.safetensors"; }
-  void put_back() const { write_file(target(), before_); }
-  void write(FileSystem& files) const {
-    write_safetensors(target(), content(2).first, content(2).second, files);
-  }
-  using Content = std::pair<std::map<std::string, std::string>, std::map<std::string, StoredTensor>>;
-  static const Content& content(uint64_t step) {
-    static std::map<uint64_t, Content> read;
-    Content& all = read[step];
-    if (all.second.empty()) {
-      const SafetensorsFile file(RunFolder(straight_.folder).numbered(step + 1));
-      all.first = file.metadata();
-      for (const auto& name : file.names()) all.second.emplace(name, file.read(name));
-    }
-    return all;
+    EXPECT_NE(before_, after_);
   }
 
+  void put_back() const { write_file(target_, before_); }
+  void write(FileSystem& files) const { write_safetensors(target_, second_.metadata(), tensors_, files); }
+  /// Names of the calls that it takes.
+  const std::vector<std::string>& calls() const { return calls_; }
+  /// The second where that was reported, one of both otherwise, whole; and nothing else.
+  void expect_whole(bool reported) const {
+    const auto now = bytes(target_);
+    EXPECT_TRUE(now == after_ || (!reported && now == before_));
+    EXPECT_EQ(folder_.entries(), 1U);
+  }
+
+ private:
+  const TempFolder& folder_;
+  std::filesystem::path target_;
+  SafetensorsFile second_;
+  std::map<std::string, StoredTensor> tensors_;
   std::vector<std::byte> before_, after_;
   std::vector<std::string> calls_;
 };
 
-TEST_F(Replacing, WhateverCallFailsOneOfThemIsThere) {
+TEST_F(Faults, WhateverCallFailsOneCheckpointIsThere) {
+  const Replacing replacing(folder_, RunFolder(straight_.folder));
   for (const int error : {ENOSPC, EIO, EROFS}) {
-    for (const uint64_t at : error == ENOSPC ? first(calls_.size()) : stages(calls_)) {
-      SCOPED_TRACE(testing::Message() << calls_[at] << ", call " << at << ", error " << error);
-      put_back();
+    const auto& calls = replacing.calls();
+    for (const uint64_t at : error == ENOSPC ? first(calls.size()) : stages(calls)) {
+      SCOPED_TRACE(testing::Message() << calls[at] << ", call " << at << ", error " << error);
+      replacing.put_back();
       FaultyFiles files(Fault::kFails, at, error);
       bool reported = false;
       try {
-        write(files);
+        replacing.write(files);
         reported = true;
       } catch (const Error& failure) {
         const std::string text = failure.what();
         EXPECT_NE(text.find("latest.safetensors"), std::string::npos) << text;
         EXPECT_NE(text.find("; "), std::string::npos) << "no advice: " << text;
       }
-      ASSERT_TRUE(files.hit());
+      EXPECT_TRUE(files.hit());
       ++injected_;
-      const auto now = bytes(target());
-      EXPECT_TRUE(now == after_ || (!reported && now == before_));
-      EXPECT_EQ(folder_.entries(), 1U);
+      replacing.expect_whole(reported);
     }
   }
 }
 
-TEST_F(Replacing, AProcessThatIsKilledAtAnyCallLeavesOneOfThem) {
-  for (uint64_t at = 0; at < calls_.size(); ++at) {
-    SCOPED_TRACE(testing::Message() << calls_[at] << ", call " << at);
-    put_back();
+TEST_F(Faults, AProcessThatIsKilledAtAnyCallLeavesOneCheckpoint) {
+  const Replacing replacing(folder_, RunFolder(straight_.folder));
+  for (const uint64_t at : first(replacing.calls().size())) {
+    SCOPED_TRACE(testing::Message() << replacing.calls()[at] << ", call " << at);
+    replacing.put_back();
     FaultyFiles files(Fault::kKilled, at);
-    EXPECT_THROW(write(files), test::Killed);
+    EXPECT_THROW(replacing.write(files), test::Killed);
     ++injected_;
-    const auto now = bytes(target());
-    EXPECT_TRUE(now == after_ || now == before_);
     RunFolder(folder_.path()).remove_remains();
-    EXPECT_EQ(folder_.entries(), 1U);
+    replacing.expect_whole(false);
   }
 }
 
-TEST_F(Replacing, AProcessThatIsReallyKilledDoesTheSame) {
-  for (const uint64_t at : stages(calls_)) {
-    SCOPED_TRACE(testing::Message() << calls_[at] << ", call " << at);
-    put_back();
-    content(2);
+TEST_F(Faults, AProcessThatIsReallyKilledDoesTheSame) {
+  const Replacing replacing(folder_, RunFolder(straight_.folder));
+  for (const uint64_t at : stages(replacing.calls())) {
+    SCOPED_TRACE(testing::Message() << replacing.calls()[at] << ", call " << at);
+    replacing.put_back();
     const pid_t child = ::fork();  // which touches nothing but files
     ASSERT_GE(child, 0);
     if (child == 0) {
       FaultyFiles files(Fault::kSigkill, at);
-      write(files);
+      replacing.write(files);
       ::_exit(0);
     }
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
     ASSERT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) << status;
     ++injected_;
-    const auto now = bytes(target());
-    EXPECT_TRUE(now == after_ || now == before_);
     RunFolder(folder_.path()).remove_remains();
-    EXPECT_EQ(folder_.entries(), 1U);
+    replacing.expect_whole(false);
   }
 }
 

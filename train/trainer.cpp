@@ -110,7 +110,7 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
                      .part = part()});
   if (options_.eval_every > 0 && leads())
     stage.probe = std::make_unique<HeldOutProbe>(
-        store_, config_.model, s.rooms,
+        store_, s.model_in(config_.model), s.rooms,
         HeldOutProbe::Options{.batch = std::min(s.batch, kProbeBatch),
                               // Whatever the data, it is measured in rooms.
                               .seed = rooms_seed(options_.data).value_or(0) + kProbeSeedDistance,
@@ -141,7 +141,7 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
     ++position_.skipped_in_a_row;
   } else {
     position_.skipped_in_a_row = 0;
-    store_.count_step(s.hypotheses == Hypotheses::kBackground);
+    store_.count_step(s.hypotheses == Hypotheses::kBackground, s.model_in(config_.model).slots);
   }
   record.skipped_steps = position_.skipped;
   record.seconds = seconds_since(start);

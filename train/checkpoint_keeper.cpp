@@ -40,7 +40,7 @@ CheckpointKeeper::CheckpointKeeper(RunFolder folder, uint64_t keep, bool resumed
 void CheckpointKeeper::save_numbered(uint64_t step) {
   write_(folder_.numbered(step), {});
   save_latest();
-  if (keep_ > 0) remove_old(step);
+  remove_old(step);
 }
 
 void CheckpointKeeper::save_if_best(const HeldOutScores& scores) {
@@ -51,6 +51,7 @@ void CheckpointKeeper::save_if_best(const HeldOutScores& scores) {
 }
 
 void CheckpointKeeper::remove_old(uint64_t step) const {
+  if (keep_ == 0) return;
   std::vector<uint64_t> steps = folder_.numbered_steps();
   std::erase_if(steps, [&](uint64_t other) { return other > step; });
   for (size_t i = 0; i + keep_ < steps.size(); ++i) {

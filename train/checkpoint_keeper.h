@@ -31,10 +31,10 @@ class CheckpointKeeper {
   void save_numbered(uint64_t step);
   /// The best, where no better one was measured before.
   void save_if_best(const HeldOutScores& scores);
-
- private:
+  /// What a process that was killed after a numbered checkpoint did not come to remove.
   void remove_old(uint64_t step) const;
 
+ private:
   RunFolder folder_;
   uint64_t keep_;
   FileSystem* files_;

@@ -185,10 +185,12 @@ SharedStep Trainer::shared(double waited, double seconds) {
 
 void Trainer::save(bool numbered) {
   if (!leads()) return;
-  if (numbered)
+  if (numbered) {
     keeper_.save_numbered(position_.step);
-  else if (saved_step_ != position_.step)
-    keeper_.save_latest();
+  } else {
+    if (saved_step_ != position_.step) keeper_.save_latest();
+    keeper_.remove_old(position_.step);
+  }
   saved_step_ = position_.step;
   saved_at_ = Clock::now();
 }

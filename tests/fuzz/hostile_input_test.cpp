@@ -62,6 +62,7 @@ class SizesThatLie : public testing::Test {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "a sanitizer takes more address space than this limits";
 #endif
+    GTEST_FLAG_SET(death_test_style, "threadsafe");  // drivers of other tests have threads
     spdlog::null_logger_mt("vkopple");  // a warning is expected
   }
   void TearDown() override { spdlog::drop("vkopple"); }

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <spdlog/sinks/null_sink.h>
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -12,6 +10,7 @@
 #include "models/config.h"
 #include "runtime/pipeline_cache.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/quiet.h"
 #include "tests/support/expect_error.h"
 #include "tests/support/temp_folder.h"
 #include "train/atomic_file.h"
@@ -63,15 +62,14 @@ class SizesThatLie : public testing::Test {
     GTEST_SKIP() << "a sanitizer takes more address space than this limits";
 #endif
     GTEST_FLAG_SET(death_test_style, "threadsafe");  // drivers of other tests have threads
-    spdlog::null_logger_mt("vkopple");  // a warning is expected
   }
-  void TearDown() override { spdlog::drop("vkopple"); }
 
   void takes_little_memory(const std::function<void()>& read) {
     EXPECT_EXIT(try_in_little_memory(read), testing::ExitedWithCode(0), "");
   }
 
   TempFolder folder_;
+  fuzz::Quiet quiet_;
 };
 
 TEST_F(SizesThatLie, OfAPipelineCache) {

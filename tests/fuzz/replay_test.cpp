@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
-#include <spdlog/sinks/null_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/quiet.h"
 #include "train/atomic_file.h"
 
 namespace vkopple {
@@ -14,13 +13,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = 1 << 20;
+constexpr std::size_t kCuts = 16;
 
-/// Gives every parser what tests/fuzz/corpus keeps for it: usual input, and what once broke it. And every
-/// beginning of that, up to a few hundred bytes.
+/// Gives every parser what tests/fuzz/corpus keeps for it, usual input and what once broke it, whole and cut
+/// off.
 class FuzzCorpus : public testing::TestWithParam<fuzz::Target> {
- protected:
-  void SetUp() override { spdlog::null_logger_mt("vkopple"); }  // warnings of damaged files are expected
-  void TearDown() override { spdlog::drop("vkopple"); }
+ private:
+  fuzz::Quiet quiet_;
 };
 
 TEST_P(FuzzCorpus, IsReadOrRefused) {
@@ -35,7 +34,7 @@ TEST_P(FuzzCorpus, IsReadOrRefused) {
     const std::vector<std::byte> bytes = read_file(file, kMostBytes);
     SCOPED_TRACE(file.filename().string());
     fuzz::tolerate([&] { target.run(bytes); });
-    const std::size_t step = 1 + bytes.size() / 16;
+    const std::size_t step = 1 + bytes.size() / kCuts;
     for (std::size_t length = 0; length < bytes.size(); length += step)
       fuzz::tolerate([&] { target.run(fuzz::Input(bytes).first(length)); });
   }

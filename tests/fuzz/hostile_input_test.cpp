@@ -16,6 +16,7 @@
 #include "train/atomic_file.h"
 #include "train/formats/authors/authors_table.h"
 #include "train/formats/tfrecord.h"
+#include "train/image_io.h"
 #include "train/json_io.h"
 #include "train/pickle/pickle.h"
 #include "train/pickle/pickle_writer.h"
@@ -122,6 +123,16 @@ TEST_F(SizesThatLie, OfARecord) {
 TEST_F(SizesThatLie, OfAPickle) {
   const std::string text = "\x80\x04\x8e" + little_endian(std::uint64_t{1} << 40) + "x.";
   takes_little_memory([&] { Pickle(std::as_bytes(std::span(text)), "a.pickle"); });
+}
+
+TEST_F(SizesThatLie, OfAnExr) {
+  const std::string longest = "\xff\xff\xff\x3f";
+  const std::string text =
+      std::string("\x76\x2f\x31\x01\x02\0\0\0owner\0string\0", 21) + longest + std::string(100, 'x');
+  takes_little_memory([&] { decode_exr(std::as_bytes(std::span(text)), "a.exr"); });
+  expect_error([&] { decode_exr(std::as_bytes(std::span(text)), "a.exr"); }, {"a.exr", "longer than the file"});
+  write_file(folder_ / "a.exr", text);
+  takes_little_memory([&] { read_rgb(folder_ / "a.exr"); });
 }
 
 TEST(HostileInput, ObjectsThatRowsShareAreCounted) {

@@ -17,6 +17,7 @@ RoomsConfig read_rooms_config(JsonObject object, const RoomsConfig& base) {
   object.number("camera_step", c.camera_step, 0, 1);
   object.number("pan", c.pan, 0, 3);
   object.choice("textures", c.textures, kRoomTexturesNames);
+  object.number("room_contrast", c.room_contrast, 0, 1);
   object.choices("shapes", c.shapes, kRoomShapeNames);
   object.integer("frames", c.frames, 3, 100);
   object.integer("supersample", c.supersample, 1, 8);
@@ -36,6 +37,7 @@ nlohmann::ordered_json write_rooms_config(const RoomsConfig& c) {
           {"camera_step", c.camera_step},
           {"pan", c.pan},
           {"textures", kRoomTexturesNames[static_cast<std::size_t>(c.textures)]},
+          {"room_contrast", c.room_contrast},
           {"shapes", shapes},
           {"frames", c.frames},
           {"supersample", c.supersample}};

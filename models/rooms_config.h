@@ -37,6 +37,7 @@ struct RoomsConfig {
   double camera_step = 0.1;               ///< the camera's largest, along each of x and y
   double pan = 0.12;                      ///< the camera's largest turn
   RoomTextures textures = RoomTextures::kMixed;
+  double room_contrast = 1;  ///< of the colours of walls, floor and ceiling: 1 as drawn, 0 their mean
   std::vector<RoomShape> shapes = every_shape();
   int frames = 7;       ///< of a scene
   int supersample = 4;  ///< rays along each side of a pixel

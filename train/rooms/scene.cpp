@@ -134,6 +134,16 @@ Material draw_material(RoomTextures textures, std::array<double, 2> smooth_perio
   return m;
 }
 
+/// A surface's colours, drawn towards their mean.
+Material faded(Material m, double contrast) {
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    double mean = 0;
+    for (const Vec3& colour : m.colours) mean += colour[channel] / static_cast<double>(m.colours.size());
+    for (Vec3& colour : m.colours) colour[channel] = std::lerp(mean, colour[channel], contrast);
+  }
+  return m;
+}
+
 Vec3 draw_light(Random& random) {
   const double around = random.between(0, 2 * kPi), up = random.between(0.5, 0.9);
   const double flat = std::sqrt(1 - up * up);
@@ -144,9 +154,8 @@ Scene furnish(const Layout& layout, const RoomsConfig& config, Random& random) {
   Scene scene;
   scene.cameras = layout.cameras;
   scene.light = draw_light(random);
-  scene.wall = draw_material(config.textures, kRoomSmooth, random);
-  scene.floor = draw_material(config.textures, kRoomSmooth, random);
-  scene.ceiling = draw_material(config.textures, kRoomSmooth, random);
+  for (Material* surface : {&scene.wall, &scene.floor, &scene.ceiling})
+    *surface = faded(draw_material(config.textures, kRoomSmooth, random), config.room_contrast);
   for (const auto& mover : layout.movers) {
     RoomObject object;
     object.shape = config.shapes[random.below(static_cast<std::uint32_t>(config.shapes.size()))];

@@ -105,6 +105,31 @@ TEST(RoomScene, OptionsAreObeyed) {
   }
 }
 
+TEST(RoomScene, RoomContrastFadesTheRoomAndNothingElse) {
+  RoomsConfig config;
+  const Scene vivid = sample_scene(config, kHalfView, 3, 9);
+  config.room_contrast = 0.25;
+  const Scene faded = sample_scene(config, kHalfView, 3, 9);
+  for (const auto surface : {&Scene::wall, &Scene::floor, &Scene::ceiling}) {
+    const auto& a = (vivid.*surface).colours;
+    const auto& b = (faded.*surface).colours;
+    double most = 0;  // two colours that differ by less are drawn again
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      most = std::max(most, std::abs(a[0][channel] - a[1][channel]));
+    EXPECT_GE(most, 0.35);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      EXPECT_NEAR(b[0][channel] - b[1][channel], 0.25 * (a[0][channel] - a[1][channel]), 1e-12);
+      EXPECT_NEAR(b[0][channel] - b[2][channel], 0.25 * (a[0][channel] - a[2][channel]), 1e-12);
+      EXPECT_NEAR(b[0][channel] + b[1][channel] + b[2][channel], a[0][channel] + a[1][channel] + a[2][channel],
+                  1e-12);
+    }
+  }
+  for (std::size_t i = 0; i < vivid.objects.size(); ++i) {
+    EXPECT_EQ(faded.objects[i].material.colours, vivid.objects[i].material.colours);
+    EXPECT_EQ(faded.objects[i].start, vivid.objects[i].start);
+  }
+}
+
 TEST(RoomScene, NoSpaceIsAnError) {
   RoomsConfig config;
   config.objects = 8;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "train/atomic_file.h"
@@ -33,6 +34,26 @@ const ImageSpec& wishes() {
   }();
   return kWishes;
 }
+
+/// The library's own reads before the first byte where a file sends it to a place below zero, as the table of
+/// an EXR's lines can.
+class WithinBytes : public OIIO::Filesystem::IOMemReader {
+ public:
+  using IOMemReader::IOMemReader;
+
+  std::size_t read(void* to, std::size_t size) override {
+    const std::size_t got = pread(to, size, m_pos);
+    m_pos += static_cast<std::int64_t>(got);
+    return got;
+  }
+  std::size_t pread(void* to, std::size_t size, std::int64_t offset) override {
+    const auto end = static_cast<std::int64_t>(m_buf.size());
+    if (offset < 0 || offset >= end) return 0;
+    size = std::min(size, static_cast<std::size_t>(end - offset));
+    std::memcpy(to, m_buf.data() + offset, size);
+    return size;
+  }
+};
 
 /// The format of a file that is checked before the library sees it; null for others. Also tells a missing file
 /// from a strange one, which the library's messages do not.
@@ -71,7 +92,7 @@ void ImageSource::open(std::span<const std::byte> bytes, const char* format) {
   const std::string_view kind = format;
   const std::string fault = kind == "png" ? png_fault(bytes) : kind == "exr" ? exr_fault(bytes) : "";
   if (!fault.empty()) fail(fault);
-  memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+  memory_ = std::make_unique<WithinBytes>(bytes.data(), bytes.size());
   image_ = ImageInput::create(format);
   ImageSpec ignored;
   if (image_ && (!image_->set_ioproxy(memory_.get()) || !image_->open(source_, ignored, wishes()))) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/guarded_copy.h"
 #include "tests/fuzz/quiet.h"
 #include "train/atomic_file.h"
 
@@ -14,6 +15,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = 1 << 20;
 constexpr std::size_t kCuts = 16;
+
+void replay(const fuzz::Target& target, fuzz::Input input, fuzz::GuardedCopy::Edge edge) {
+  const fuzz::GuardedCopy copy(input, edge);
+  fuzz::tolerate([&] { target.run(copy.bytes()); });
+}
 
 /// Gives every parser what tests/fuzz/corpus keeps for it, usual input and what once broke it, whole and cut
 /// off.
@@ -33,10 +39,10 @@ TEST_P(FuzzCorpus, IsReadOrRefused) {
   for (const fs::path& file : files) {
     const std::vector<std::byte> bytes = read_file(file, kMostBytes);
     SCOPED_TRACE(file.filename().string());
-    fuzz::tolerate([&] { target.run(bytes); });
+    replay(target, bytes, fuzz::GuardedCopy::Edge::kFirst);
     const std::size_t step = 1 + bytes.size() / kCuts;
-    for (std::size_t length = 0; length < bytes.size(); length += step)
-      fuzz::tolerate([&] { target.run(fuzz::Input(bytes).first(length)); });
+    for (std::size_t cut = 0; cut < bytes.size(); cut += step)
+      replay(target, fuzz::Input(bytes).first(bytes.size() - cut), fuzz::GuardedCopy::Edge::kLast);
   }
 }
 

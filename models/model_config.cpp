@@ -6,7 +6,6 @@ namespace vkopple {
 namespace {
 
 constexpr int kMostChannels = 1024;
-constexpr int kMostSlots = 254;  // whose masks, with the background, pictures of 8 bits can number
 constexpr int kMostBins = 3600;  // a tenth of a degree each
 
 }  // namespace

@@ -26,6 +26,9 @@ inline constexpr std::array<std::string_view, 2> kOrientationNames{"yaw", "euler
 /// Numbers of a slot for the angles' cosines and sines.
 inline constexpr int kEulerNumbers = 6;
 
+/// Whose masks, with the background's, pictures of 8 bits can number.
+inline constexpr int kMostSlots = 254;
+
 /// Pixels on a side of the model's images, least and most.
 inline constexpr int kSmallestImage = 4, kLargestImage = 4096;
 

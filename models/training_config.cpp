@@ -43,6 +43,9 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   double reg = 0;
   object.number("reg", reg, 0, 1e6);
   if (object.has("reg")) s.reg = reg;
+  int slots = 0;
+  object.integer("slots", slots, 1, kMostSlots);
+  if (slots > 0) s.slots = slots;
   object.integer("batch", s.batch, 1, kLargestBatch);
   s.rooms = read_rooms_config(object.object("rooms"), defaults.rooms);
   object.finish();
@@ -67,6 +70,7 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& ro
   if (s.warmup > 0) result["warmup"] = s.warmup;
   if (s.final_learning_rate) result["final_learning_rate"] = *s.final_learning_rate;
   if (s.reg) result["reg"] = *s.reg;
+  if (s.slots) result["slots"] = *s.slots;
   result["batch"] = s.batch;
   const nlohmann::ordered_json base = write_rooms_config(rooms);
   const nlohmann::ordered_json mine = write_rooms_config(s.rooms);
@@ -97,6 +101,12 @@ void read_stages(JsonObject& object, TrainingConfig& c, const ModelConfig& model
 
 bool TrainingStage::learns(Network network) const {
   return std::find(networks.begin(), networks.end(), network) != networks.end();
+}
+
+ModelConfig TrainingStage::model_in(ModelConfig model) const {
+  model.reg = reg.value_or(model.reg);
+  model.slots = slots.value_or(model.slots);
+  return model;
 }
 
 double TrainingStage::learning_rate_at(std::uint64_t step) const {

@@ -36,6 +36,7 @@ struct TrainingStage {
   /// To which the learning rate falls, along half a cosine over the stage's steps; absent: it stays.
   std::optional<double> final_learning_rate;
   std::optional<double> reg;  ///< in place of ModelConfig::reg
+  std::optional<int> slots;   ///< in place of ModelConfig::slots, whose weights do not depend on their number
   int batch = 20;
   RoomsConfig rooms;
 
@@ -43,6 +44,8 @@ struct TrainingStage {
   double learning_rate_at(std::uint64_t step) const;
 
   bool learns(Network network) const;
+  /// The model as this stage trains it.
+  ModelConfig model_in(ModelConfig model) const;
   bool operator==(const TrainingStage&) const = default;
 };
 

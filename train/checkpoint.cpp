@@ -181,6 +181,8 @@ LoadedModel load_model(const Device& device, const std::filesystem::path& path) 
   LoadedModel model{header.config, header.position, std::make_unique<ModelStore>(device, std::move(layout))};
   read_entries(file, *model.store, model.store->layout().weights());
   read_counters(file, *model.store);
+  ModelConfig& in_use = model.config.model;
+  in_use.slots = header.config.stages()[header.position.stage].model_in(in_use).slots;
   return model;
 }
 

@@ -43,7 +43,7 @@ TrainingPosition load_checkpoint(const std::filesystem::path& path, ModelStore& 
 
 /// A trained model.
 struct LoadedModel {
-  Config config;
+  Config config;  ///< with as many slots as the stage had that it was last trained in
   TrainingPosition position;
   std::unique_ptr<ModelStore> store;
 

@@ -16,7 +16,7 @@ constexpr int64_t kFrames = 3;
 }  // namespace
 
 ModelLayout::ModelLayout(const ModelConfig& config, Precision precision)
-    : slots_(config.slots), frames_seen_(config.statistics_frames == StatisticsFrames::kAll ? kFrames : 1) {
+    : frames_seen_(config.statistics_frames == StatisticsFrames::kAll ? kFrames : 1) {
   Graph graph;
   const Opple model(graph, config, {.batch = 1, .training = true});
   add_weights(graph, model);
@@ -63,11 +63,11 @@ void ModelLayout::add_loss_scale(Graph& graph, const std::vector<std::string>& n
       {kLossScaleState, kLossScaleGroup, graph.info(state.id()).offset, state.shape(), Initial::constant(0)});
 }
 
-int64_t ModelLayout::calls_in_a_step(const std::string& counter, bool background_only) const {
+int64_t ModelLayout::calls_in_a_step(const std::string& counter, bool background_only, int slots) const {
   const bool depth = counter.starts_with("depth_model.");
   if (background_only) return depth ? 1 : 0;
   const bool decoder = counter.find("_att.") != std::string::npos;
-  if (decoder) return frames_seen_ * slots_;
+  if (decoder) return frames_seen_ * slots;
   return depth ? frames_seen_ : kFrames;
 }
 

@@ -42,7 +42,7 @@ class ModelLayout {
   /// Names of the "num_batches_tracked" of every batch norm.
   const std::vector<std::string>& batch_counters() const { return batch_counters_; }
   /// How often one step of training calls the batch norm of this counter (docs/model.md §6).
-  int64_t calls_in_a_step(const std::string& counter, bool background_only) const;
+  int64_t calls_in_a_step(const std::string& counter, bool background_only, int slots) const;
   /// Bytes of the groups that hold them.
   const std::map<std::string, uint64_t>& groups() const { return groups_; }
 
@@ -51,7 +51,6 @@ class ModelLayout {
   void add_loss_scale(Graph& graph, const std::vector<std::string>& networks);
   void add_optimiser(Graph& graph, const std::string& network, Value rate);
 
-  int64_t slots_;
   int64_t frames_seen_;  ///< that pass depth network and mask decoder in a step of everything
   std::vector<LayoutEntry> weights_;
   std::vector<LayoutEntry> optimiser_;

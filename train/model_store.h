@@ -39,7 +39,7 @@ class ModelStore {
   std::map<std::string, int64_t>& batch_counters() { return batch_counters_; }
   const std::map<std::string, int64_t>& batch_counters() const { return batch_counters_; }
   /// Counts a step of training.
-  void count_step(bool background_only);
+  void count_step(bool background_only, int slots);
 
  private:
   Slice slice(const LayoutEntry& entry) const;

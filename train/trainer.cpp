@@ -112,7 +112,7 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
                      .part = part()});
   if (options_.eval_every > 0 && leads())
     stage.probe = std::make_unique<HeldOutProbe>(
-        store_, config_.model, s.rooms,
+        store_, s.model_in(config_.model), s.rooms,
         HeldOutProbe::Options{.batch = std::min(s.batch, kProbeBatch),
                               // Whatever the data, it is measured in rooms.
                               .seed = rooms_seed(options_.data).value_or(0) + kProbeSeedDistance,
@@ -138,7 +138,7 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   stage.training->set_learning_rate(record.learning_rate);
   record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
   require_finite_losses(record.losses, step + 1);
-  store_.count_step(s.hypotheses == Hypotheses::kBackground);
+  store_.count_step(s.hypotheses == Hypotheses::kBackground, s.model_in(config_.model).slots);
   record.seconds = seconds_since(start);
   if (several(options_.peers)) record.shared = shared(stage.training->exchange_seconds(), record.seconds);
   position_.step = step + 1;

@@ -55,9 +55,7 @@ int part_of(int batch, const Peers* peers) {
 TrainingStep::TrainingStep(const Device& device, const Config& config, const TrainingStage& stage,
                            std::shared_ptr<GroupStore> groups, bool profile, Peers* peers)
     : peers_(peers) {
-  ModelConfig model = config.model;
-  model.reg = stage.reg.value_or(model.reg);
-  model_ = std::make_unique<Opple>(graph_, model,
+  model_ = std::make_unique<Opple>(graph_, stage.model_in(config.model),
                                    OppleOptions{.batch = part_of(stage.batch, peers),
                                                 .training = true,
                                                 .background_only = stage.hypotheses == Hypotheses::kBackground,

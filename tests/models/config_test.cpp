@@ -306,11 +306,14 @@ TEST(Config, OverridesThatAreNoneAreWrongUse) {
 
 TEST(Config, StagesHaveSchedulesAndWeightsOfTheirOwn) {
   const Config c = Config::parse(R"({"training": {"stages": [
-    {"name": "a", "steps": 100, "learning_rate": 0.5, "warmup": 10, "final_learning_rate": 0.1, "reg": 0.25},
+    {"name": "a", "steps": 100, "learning_rate": 0.5, "warmup": 10, "final_learning_rate": 0.1, "reg": 0.25,
+     "slots": 2},
     {"name": "b", "learning_rate": 0.25}]}})",
                                  "x");
   const TrainingStage a = c.stages()[0];
   EXPECT_EQ(a.reg, 0.25);
+  EXPECT_EQ(a.model_in(c.model).reg, 0.25);
+  EXPECT_EQ(a.model_in(c.model).slots, 2);
   EXPECT_NEAR(a.learning_rate_at(0), 0.05, 1e-12);
   EXPECT_NEAR(a.learning_rate_at(4), 0.5 * (0.1 + 0.4 * (1 + std::cos(std::numbers::pi * 0.04)) / 2), 1e-12);
   EXPECT_NEAR(a.learning_rate_at(50), 0.3, 1e-12);
@@ -318,6 +321,7 @@ TEST(Config, StagesHaveSchedulesAndWeightsOfTheirOwn) {
   EXPECT_NEAR(a.learning_rate_at(1000), 0.1, 1e-12);
   const TrainingStage b = c.stages()[1];
   EXPECT_FALSE(b.reg || b.final_learning_rate);
+  EXPECT_EQ(b.model_in(c.model), c.model);
   EXPECT_EQ(b.learning_rate_at(12345), 0.25);
   EXPECT_EQ(Config::parse(c.to_json(), "y"), c);
   EXPECT_NE(refusal(R"({"training": {"stages": [{"name": "a", "final_learning_rate": 0.1}]}})").find("steps"),

@@ -11,12 +11,11 @@ constexpr const char* kDecoder = "segmentation_model.seg_net.seg_net.up0_att.con
 
 std::vector<int64_t> calls(StatisticsFrames frames, bool background_only) {
   ModelConfig config;
-  config.slots = 2;
   config.statistics_frames = frames;
   const ModelLayout layout(config);
   std::vector<int64_t> counts;
   for (const char* name : {kDepth, kEncoder, kDecoder})
-    counts.push_back(layout.calls_in_a_step(name, background_only));
+    counts.push_back(layout.calls_in_a_step(name, background_only, 2));
   return counts;
 }
 

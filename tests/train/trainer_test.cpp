@@ -15,6 +15,7 @@
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
 #include "train/atomic_file.h"
+#include "train/checkpoint.h"
 #include "train/formats/fit_scene.h"
 #include "train/formats/scene_reader.h"
 #include "train/safetensors.h"
@@ -176,6 +177,23 @@ TEST_F(Trained, CountsTheCallsOfBatchNorms) {
   EXPECT_EQ(end.read_ints("segmentation_model.seg_net.seg_net.down1.conv.2.num_batches_tracked").at(0), 2 * 3);
   EXPECT_EQ(end.read_ints("segmentation_model.seg_net.seg_net.up0_att.conv.2.num_batches_tracked").at(0),
             2 * 9);
+}
+
+TEST(Trainer, AStageMayHaveFewerSlots) {
+  const TempFolder folder;
+  const Config config = Config::parse(R"({
+      "model": {"height": 16, "width": 16, "depth_width": 2, "object_width": 4, "imagine_width": 1, "lstm": 4},
+      "training": {"batch": 2, "stages": [{"name": "one", "steps": 1, "slots": 1}, {"name": "all"}]}})",
+                                      "test");
+  EXPECT_FALSE(train(folder / "run", 2, 1, false, config, 1));
+  const RunFolder run(folder / "run");
+  EXPECT_EQ(load_model(test_device(), run.latest()).config.model.slots, 1);
+  EXPECT_TRUE(train(folder / "run", 2, 2, true, config, 1));
+  EXPECT_EQ(load_model(test_device(), run.latest()).config.model.slots, 3);
+  // Three frames of one slot, then of three.
+  EXPECT_EQ(SafetensorsFile(run.latest())
+                .read_ints("segmentation_model.seg_net.seg_net.up0_att.conv.2.num_batches_tracked"),
+            std::vector<std::int64_t>{3 + 9});
 }
 
 TEST_F(Trained, SeedsMatter) {

@@ -10,6 +10,7 @@
 
 #include "models/config_override.h"
 #include "models/presets.h"
+#include "models/quote_json.h"
 #include "models/strict_json.h"
 #include "runtime/error.h"
 
@@ -45,8 +46,9 @@ void fill_in_base(nlohmann::json& value, std::string_view origin) {
   const nlohmann::json name = value["base"];
   const auto preset = name.is_string() ? find_preset(name.get<std::string>()) : std::nullopt;
   if (!preset)
-    throw Error(fmt::format("{}: base is {}; give a preset, one of {}", origin, name.dump(),
-                            fmt::join(preset_names(), ", ")));
+    JsonObject(value, std::string(origin), "")
+        .refuse("base", fmt::format("is {}; give a preset, one of {}", quote_json(name),
+                                    fmt::join(preset_names(), ", ")));
   nlohmann::json base = parse_strict_json(*preset, fmt::format("preset {}", name.get<std::string>()));
   fill_in_base(base, origin);
   value.erase("base");

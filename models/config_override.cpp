@@ -5,6 +5,7 @@
 #include <charconv>
 #include <string>
 
+#include "models/quote_json.h"
 #include "models/strict_json.h"
 #include "runtime/error.h"
 
@@ -14,6 +15,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::string_view kKeyCharacters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+constexpr std::size_t kLongestShown = 200;
+constexpr std::size_t kDeepest = 32;  // far beyond any configuration
 
 /// Walks the keys of one assignment.
 class Path {
@@ -22,7 +25,8 @@ class Path {
 
   json& follow(json& root) {
     json* place = &member(root);
-    while (!rest_.empty()) {
+    for (std::size_t level = 1; !rest_.empty(); ++level) {
+      if (level == kDeepest) refuse("asks for a key that is nested too deep; no key is");
       const bool index = rest_.front() == '[';
       if (!index && rest_.front() != '.') refuse("is no key; write it as training.stages[0].steps");
       rest_.remove_prefix(1);
@@ -35,7 +39,7 @@ class Path {
   std::string_view done() const { return text_.substr(0, text_.size() - rest_.size()); }
 
   [[noreturn]] void refuse(std::string_view problem) const {
-    throw UsageError(fmt::format("--set {} {}", text_, problem));
+    throw UsageError(fmt::format("--set {} {}", printable(text_, kLongestShown), problem));
   }
 
   json& member(json& object) {
@@ -70,7 +74,8 @@ class Path {
 void override_value(json& root, std::string_view assignment) {
   const std::size_t equals = assignment.find('=');
   if (equals == assignment.npos)
-    throw UsageError(fmt::format("--set {}: give KEY=VALUE, as model.reg=0.5", assignment));
+    throw UsageError(
+        fmt::format("--set {}: give KEY=VALUE, as model.reg=0.5", printable(assignment, kLongestShown)));
   const std::string_view key = assignment.substr(0, equals);
   const std::string_view value = assignment.substr(equals + 1);
   json& place = Path(key).follow(root);

@@ -29,6 +29,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.number("reg", c.reg, 0, 1000);
   object.number("smoothness", c.smoothness, 0, 1000);
   object.number("pose_contrast", c.pose_contrast, 0, 1000);
+  object.number("slot_contrast", c.slot_contrast, 0, 1000);
   object.boolean("warp", c.warp);
   object.boolean("relaxed", c.relaxed);
   object.choice("orientation", c.orientation, kOrientationNames);
@@ -68,6 +69,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"reg", c.reg},
           {"smoothness", c.smoothness},
           {"pose_contrast", c.pose_contrast},
+          {"slot_contrast", c.slot_contrast},
           {"warp", c.warp},
           {"relaxed", c.relaxed},
           {"orientation", kOrientationNames[static_cast<std::size_t>(c.orientation)]},

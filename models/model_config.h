@@ -52,6 +52,7 @@ struct ModelConfig {
   double reg = 1.0;          ///< factor of the regularising losses
   double smoothness = 0;     ///< of the masks' spatial smoothness among them
   double pose_contrast = 0;  ///< of the contrast of poses among them; of yaw alone
+  double slot_contrast = 0;  ///< of the contrast of the slots' places among them
   bool warp = true;          ///< false: only the imagined image is used (an ablation)
   bool relaxed = false;      ///< true: learned motion; of yaw alone
   Orientation orientation = Orientation::kYaw;

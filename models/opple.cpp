@@ -17,6 +17,7 @@
 #include "graph/ops/project.h"
 #include "graph/ops/relayout.h"
 #include "graph/ops/slice.h"
+#include "graph/ops/slot_contrast.h"
 #include "graph/ops/smoothness_loss.h"
 #include "graph/ops/splat.h"
 #include "graph/ops/warp_share.h"
@@ -193,6 +194,10 @@ void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& mo
     losses_["pose_contrast"] = pose_contrast(whole_batch(o[0].log_pose), whole_batch(o[2].log_pose), whole_q,
                                              permutation_, pose_divergence(config_));
     weigh("pose_contrast", reg * config_.pose_contrast);
+  }
+  if (config_.slot_contrast > 0) {
+    losses_["slot_contrast"] = slot_contrast(o[1].location);
+    weigh("slot_contrast", reg * config_.slot_contrast);
   }
   losses_["total"] = weighted_sum(terms, factors);
   loss_ = losses_["total"];

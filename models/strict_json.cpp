@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "models/quote_json.h"
 #include "runtime/error.h"
 
 namespace vkopple {
@@ -15,20 +16,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kDeepest = 32;
-constexpr std::size_t kLongestQuote = 40;
-
-/// The value as a message shows it: short, on one line, printable.
-std::string quote(const json& value) {
-  std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > kLongestQuote) text = text.substr(0, kLongestQuote) + "...";
-  return text;
-}
-
-/// The same for a key, without the quotation marks.
-std::string quote_key(const std::string& key) {
-  const std::string text = quote(key);
-  return text.ends_with('"') ? text.substr(1, text.size() - 2) : text.substr(1);
-}
 
 /// Watches a parse: nlohmann keeps the last of equal keys without a word, so they are caught here.
 class DuplicateGuard {
@@ -72,7 +59,7 @@ class DuplicateGuard {
 
   void add(const std::string& key) {
     Level& level = levels_.back();
-    level.last = quote_key(key);
+    level.last = printable(key);
     if (level.keys.insert(key).second) return;
     std::vector<std::string> path;
     for (const Level& l : levels_) {
@@ -103,7 +90,7 @@ JsonObject::JsonObject(const json& value, std::string origin, std::string path)
     : value_(&value), origin_(std::move(origin)), path_(std::move(path)) {
   if (value.is_object()) return;
   throw Error(fmt::format("{}: {} is {}; give an object {{...}}", origin_, path_.empty() ? "the text" : path_,
-                          quote(value)));
+                          quote_json(value)));
 }
 
 std::string JsonObject::full(std::string_view key) const {
@@ -127,7 +114,7 @@ void JsonObject::integer(std::string_view key, std::int64_t& value, std::int64_t
       found->is_number_integer() &&
       (!found->is_number_unsigned() || found->get<std::uint64_t>() <= static_cast<std::uint64_t>(INT64_MAX));
   if (!fits || found->get<std::int64_t>() < lowest || found->get<std::int64_t>() > highest) {
-    refuse(key, fmt::format("is {}; give a whole number from {} to {}", quote(*found), lowest, highest));
+    refuse(key, fmt::format("is {}; give a whole number from {} to {}", quote_json(*found), lowest, highest));
   }
   value = found->get<std::int64_t>();
 }
@@ -142,7 +129,7 @@ void JsonObject::number(std::string_view key, double& value, double lowest, doub
   const json* found = find(key);
   if (found == nullptr) return;
   if (!found->is_number() || !(found->get<double>() >= lowest && found->get<double>() <= highest)) {
-    refuse(key, fmt::format("is {}; give a number from {} to {}", quote(*found), lowest, highest));
+    refuse(key, fmt::format("is {}; give a number from {} to {}", quote_json(*found), lowest, highest));
   }
   value = found->get<double>();
 }
@@ -150,14 +137,14 @@ void JsonObject::number(std::string_view key, double& value, double lowest, doub
 void JsonObject::boolean(std::string_view key, bool& value) {
   const json* found = find(key);
   if (found == nullptr) return;
-  if (!found->is_boolean()) refuse(key, fmt::format("is {}; give true or false", quote(*found)));
+  if (!found->is_boolean()) refuse(key, fmt::format("is {}; give true or false", quote_json(*found)));
   value = found->get<bool>();
 }
 
 void JsonObject::text(std::string_view key, std::string& value) {
   const json* found = find(key);
   if (found == nullptr) return;
-  if (!found->is_string()) refuse(key, fmt::format("is {}; give a text in quotes", quote(*found)));
+  if (!found->is_string()) refuse(key, fmt::format("is {}; give a text in quotes", quote_json(*found)));
   value = found->get<std::string>();
 }
 
@@ -171,7 +158,7 @@ void JsonObject::numbers(std::string_view key, std::span<double> values, double 
     if (fits) values[i] = element.get<double>();
   }
   if (!fits) {
-    refuse(key, fmt::format("is {}; give a list of {} numbers from {} to {}", quote(*found), values.size(),
+    refuse(key, fmt::format("is {}; give a list of {} numbers from {} to {}", quote_json(*found), values.size(),
                             lowest, highest));
   }
 }
@@ -182,14 +169,14 @@ std::size_t JsonObject::index_of(const json& value, std::string_view key,
                          ? std::find(names.begin(), names.end(), value.get_ref<const std::string&>())
                          : names.end();
   if (found == names.end())
-    refuse(key, fmt::format("is {}; give one of {}", quote(value), fmt::join(names, ", ")));
+    refuse(key, fmt::format("is {}; give one of {}", quote_json(value), fmt::join(names, ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }
 
 std::vector<std::size_t> JsonObject::indices_of(const json& value, std::string_view key,
                                                 std::span<const std::string_view> names) const {
   if (!value.is_array() || value.empty()) {
-    refuse(key, fmt::format("is {}; give a list of {}", quote(value), fmt::join(names, ", ")));
+    refuse(key, fmt::format("is {}; give a list of {}", quote_json(value), fmt::join(names, ", ")));
   }
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -213,7 +200,7 @@ std::vector<JsonObject> JsonObject::objects(std::string_view key, std::size_t mo
   const json* found = find(key);
   if (found == nullptr) return result;
   if (!found->is_array() || found->size() > most) {
-    refuse(key, fmt::format("is {}; give a list of at most {} objects", quote(*found), most));
+    refuse(key, fmt::format("is {}; give a list of at most {} objects", quote_json(*found), most));
   }
   for (std::size_t i = 0; i < found->size(); ++i)
     result.emplace_back((*found)[i], origin_, fmt::format("{}[{}]", full(key), i));
@@ -223,7 +210,7 @@ std::vector<JsonObject> JsonObject::objects(std::string_view key, std::size_t mo
 void JsonObject::finish() const {
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-      refuse(quote_key(key), fmt::format("is no key; the keys here are {}", fmt::join(known_, ", ")));
+      refuse(printable(key), fmt::format("is no key; the keys here are {}", fmt::join(known_, ", ")));
     }
   }
 }

@@ -59,7 +59,9 @@ std::vector<std::byte> load_pipeline_cache(const std::filesystem::path& file, co
   if (!in.read(reinterpret_cast<char*>(&found), sizeof found)) return ignored("too short");
   if (found.magic != Header{}.magic || found.version != Header{}.version)
     return ignored("not a pipeline cache");
-  if (found.bytes > kLargestCache) return ignored("damaged");
+  std::error_code failure;  // which makes the size one that does not fit
+  if (found.bytes > kLargestCache || std::filesystem::file_size(file, failure) != sizeof found + found.bytes)
+    return ignored("damaged");
   std::vector<std::byte> data(found.bytes);
   if (!in.read(reinterpret_cast<char*>(data.data()), static_cast<std::streamsize>(data.size())) ||
       in.peek() != std::ifstream::traits_type::eof())

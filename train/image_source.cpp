@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "train/atomic_file.h"
+#include "train/exr_check.h"
 #include "train/png_check.h"
 #include "train/quote.h"
 
@@ -21,7 +23,7 @@ using OIIO::ImageSpec;
 using OIIO::TypeDesc;
 
 constexpr int kMaxChannels = 1024;
-constexpr std::size_t kMaxPngBytes = std::size_t{1} << 30;
+constexpr std::size_t kMaxCheckedBytes = std::size_t{1} << 30;
 constexpr const char* kStrange = "not a picture of a known format, or a damaged one: ";
 
 const ImageSpec& wishes() {
@@ -33,11 +35,33 @@ const ImageSpec& wishes() {
   return kWishes;
 }
 
-/// Also tells a missing file from a strange one, which the library's messages do not.
-bool starts_as_png(const fs::path& path) {
+/// The library's own reads before the first byte where a file sends it to a place below zero, as the table of
+/// an EXR's lines can.
+class WithinBytes : public OIIO::Filesystem::IOMemReader {
+ public:
+  using IOMemReader::IOMemReader;
+
+  std::size_t read(void* to, std::size_t size) override {
+    const std::size_t got = pread(to, size, m_pos);
+    m_pos += static_cast<std::int64_t>(got);
+    return got;
+  }
+  std::size_t pread(void* to, std::size_t size, std::int64_t offset) override {
+    const auto end = static_cast<std::int64_t>(m_buf.size());
+    if (offset < 0 || offset >= end) return 0;
+    size = std::min(size, static_cast<std::size_t>(end - offset));
+    std::memcpy(to, m_buf.data() + offset, size);
+    return size;
+  }
+};
+
+/// The format of a file that is checked before the library sees it; null for others. Also tells a missing file
+/// from a strange one, which the library's messages do not.
+const char* checked_format(const fs::path& path) {
   const FileDescriptor file = open_for_reading(path);
   std::array<std::byte, 8> start{};
-  return ::read(file.get(), start.data(), start.size()) == 8 && looks_like_png(start);
+  if (::read(file.get(), start.data(), start.size()) != 8) return nullptr;
+  return looks_like_png(start) ? "png" : looks_like_exr(start) ? "exr" : nullptr;
 }
 
 }  // namespace
@@ -49,9 +73,9 @@ void fail_reading(const std::string& source, const std::string& reason) {
 }
 
 ImageSource::ImageSource(const fs::path& path) : source_(path.string()) {
-  if (starts_as_png(path)) {
-    png_ = read_file(path, kMaxPngBytes);
-    open(png_, "png");
+  if (const char* format = checked_format(path); format != nullptr) {
+    content_ = read_file(path, kMaxCheckedBytes);
+    open(content_, format);
   } else {
     image_ = ImageInput::open(source_, &wishes());
   }
@@ -65,10 +89,10 @@ ImageSource::ImageSource(std::span<const std::byte> bytes, const char* format, s
 }
 
 void ImageSource::open(std::span<const std::byte> bytes, const char* format) {
-  if (std::string_view(format) == "png") {
-    if (const std::string fault = png_fault(bytes); !fault.empty()) fail(fault);
-  }
-  memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes.data(), bytes.size());
+  const std::string_view kind = format;
+  const std::string fault = kind == "png" ? png_fault(bytes) : kind == "exr" ? exr_fault(bytes) : "";
+  if (!fault.empty()) fail(fault);
+  memory_ = std::make_unique<WithinBytes>(bytes.data(), bytes.size());
   image_ = ImageInput::create(format);
   ImageSpec ignored;
   if (image_ && (!image_->set_ioproxy(memory_.get()) || !image_->open(source_, ignored, wishes()))) {

@@ -86,7 +86,7 @@ class ImageSource {
   void check() const;
 
   std::string source_;
-  std::vector<std::byte> png_;
+  std::vector<std::byte> content_;  ///< of a file that was checked
   std::unique_ptr<OIIO::Filesystem::IOMemReader> memory_;
   std::unique_ptr<OIIO::ImageInput> image_;  // after the memory it reads from
   int index_ = 0;

@@ -112,7 +112,7 @@ class ShardReader::Tar {
   }
 
   /// The library takes a file that is cut off between two members for complete.
-  void check_end() const {
+  void check_end() {
     struct stat info {};
     std::array<char, kEndBytes> end{};
     const bool whole = ::fstat(file_.get(), &info) == 0 && info.st_size % 512 == 0 &&
@@ -121,6 +121,7 @@ class ShardReader::Tar {
     if (!whole || std::any_of(end.begin(), end.end(), [](char c) { return c != 0; })) {
       fail("not an uncompressed tar file, or one that is cut off; fetch or generate it again");
     }
+    file_bytes_ = static_cast<std::uint64_t>(info.st_size);
   }
 
   /// To the next plain file, whose name is split into key_ and extension_.
@@ -170,6 +171,7 @@ class ShardReader::Tar {
     if (size < 0 || static_cast<std::uint64_t>(size) > limits_.max_part_bytes) {
       fail(fmt::format("its size of {} bytes is not within the limit of {}", size, limits_.max_part_bytes));
     }
+    if (static_cast<std::uint64_t>(size) > file_bytes_) fail("it is cut off");
     return static_cast<std::uint64_t>(size);
   }
 
@@ -199,6 +201,7 @@ class ShardReader::Tar {
   fs::path path_;
   const ShardLimits& limits_;
   FileDescriptor file_;
+  std::uint64_t file_bytes_ = 0;
   std::unique_ptr<archive, Release> archive_;
   archive_entry* entry_ = nullptr;  ///< owned by the archive; null at the end
   std::string member_, key_, extension_;

@@ -210,6 +210,7 @@ TEST_F(Shards, RefusesLinksAndDevices) {
   refuse(tar_member("b.json") + tar_header("a.json", 0, '1', "b.json") + kTarEnd,
          {"'a.json'", "not a plain file"});
   refuse(tar_header("a.json", 0, '3') + kTarEnd, {"'a.json'", "not a plain file"});
+  refuse(tar_header("a.json", 0, '4') + kTarEnd, {"'a.json'", "not a plain file"});
   refuse(tar_header("a.json", 0, '6') + kTarEnd, {"'a.json'", "not a plain file"});
 }
 

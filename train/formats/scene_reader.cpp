@@ -47,7 +47,9 @@ std::string name_of(const NamedHelp& help) { return help.name; }
 void require_known(const std::map<std::string, std::string>& given, const std::vector<NamedHelp>& known,
                    const std::string& option, const std::string& format) {
   for (const auto& [name, value] : given) {
-    const bool found = std::any_of(known.begin(), known.end(), [&](const auto& k) { return k.name == name; });
+    const bool found = std::any_of(known.begin(), known.end(), [&name = name](const NamedHelp& known_name) {
+      return known_name.name == name;
+    });
     if (!found)
       throw UsageError(fmt::format("{} {}={}: the format {} knows {}", option, one_line(name), one_line(value),
                                    format, listed(known, name_of)));

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLengthBytes = 8, kCheckBytes = 4, kHeadBytes = kLengthBytes + kCheckBytes;
 constexpr std::size_t kReadBytes = std::size_t{1} << 16;
+constexpr std::size_t kFirstPiece = std::size_t{1} << 20;
 
 /// Little-endian, as everything in these files.
 std::uint64_t number(std::span<const std::byte> bytes) {
@@ -147,8 +148,8 @@ class TfRecordReader::File {
     const std::uint64_t length = number(length_bytes);
     if (length > most_bytes_)
       fail(fmt::format("its {} bytes are more than the {} that are read", length, most_bytes_));
-    TfRecord record{std::vector<std::byte>(length + kCheckBytes), path_, index_};
-    if (read(record.bytes) < record.bytes.size()) fail("it is cut off; fetch the file again");
+    TfRecord record{{}, path_, index_};
+    read_piece_by_piece(record.bytes, length + kCheckBytes);
     if (!agrees(std::span(record.bytes).first(length), std::span(record.bytes).last(kCheckBytes)))
       fail("its checksum is wrong: the file is damaged; fetch it again");
     record.bytes.resize(length);
@@ -157,6 +158,14 @@ class TfRecordReader::File {
   }
 
  private:
+  /// What a length announces takes no memory before it is there.
+  void read_piece_by_piece(std::vector<std::byte>& to, std::size_t count) {
+    while (to.size() < count) {
+      const std::size_t before = to.size();
+      to.resize(std::min(count, before + std::max(before, kFirstPiece)));
+      if (read(std::span(to).subspan(before)) < to.size() - before) fail("it is cut off; fetch the file again");
+    }
+  }
   /// As ByteStream::read, whose errors know no record.
   std::size_t read(std::span<std::byte> to) {
     try {

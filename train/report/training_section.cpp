@@ -22,7 +22,8 @@ std::string loss_title(const std::string& term) {
       {"pose", "pose, nats"},
       {"collapse", "collapse, scene units"},
       {"smoothness", "smoothness, squared masks summed over pixels"},
-      {"pose_contrast", "pose contrast, nats"}};
+      {"pose_contrast", "pose contrast, nats"},
+      {"slot_contrast", "slot contrast, scene units"}};
   const auto found = kTitles.find(term);
   return found == kTitles.end() ? term : found->second;
 }

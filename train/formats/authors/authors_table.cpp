@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kFrames = 3;  // of a row
 constexpr std::size_t kMaxBytes = std::size_t{2} << 30;
+constexpr std::size_t kMaxColumns = 1000;  // each row looks through them
 constexpr std::size_t kMaxTextBytes = 4096;
 constexpr std::string_view kTextPrefix = "cam_pos_";
 
@@ -39,8 +40,14 @@ std::size_t object_count(const PickleView& cell) {
   return listed ? cell.size() : 3;
 }
 
+/// Rows may share what they refer to, so that a small file can ask for any number of objects.
+void check_count(const PickleView& objects, std::size_t count) {
+  if (count > kMostSceneObjects) objects.fail(fmt::format("at most {} objects", kMostSceneObjects));
+}
+
 std::vector<PlacedObject> read_objects(const PickleView& places, const PickleView& poses) {
   const std::size_t count = object_count(places);
+  check_count(places, count);
   const std::vector<double> place = places.numbers({count, 3}), pose = poses.numbers({count, 3});
   std::vector<PlacedObject> objects;
   for (std::size_t i = 0; i < count; ++i)
@@ -61,6 +68,7 @@ AuthorsRow read_row(const PickleView& table, std::size_t row) {
     table.fail("a table with objpos1, objpos2 and objpos3, or none of them");
   if (!table.contains("objdeet1")) return result;
   const PickleView details = table["objdeet1"][row];
+  check_count(details, details.size());
   for (std::size_t i = 0; i < details.size(); ++i) result.shapes.push_back(details[i][0].string());
   return result;
 }
@@ -103,6 +111,8 @@ std::vector<AuthorsRow> read_authors_table(const fs::path& path) {
   const std::vector<std::byte> bytes = read_file(path, kMaxBytes);
   const Pickle pickle(bytes, path.string(), numpy_globals());
   const PickleView table = pickle.view();
+  if (!table.value().is(PickleKind::kDict) || table.value().items().size() > 2 * kMaxColumns)
+    table.fail(fmt::format("a dict of at most {} columns", kMaxColumns));
   std::vector<AuthorsRow> rows;
   const std::size_t count = table["frame1"].size();
   for (std::size_t row = 0; row < count; ++row) rows.push_back(read_row(table, row));

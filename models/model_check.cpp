@@ -143,6 +143,7 @@ std::vector<CheckedModel> checked_models() {
     c.pose_loss = PoseLossKind::kJs;
     c.smoothness = 0.1;
     c.pose_contrast = 0.5;
+    c.slot_contrast = 0.5;
   });
   add("no regularisers", [](ModelConfig& c) { c.reg = 0; });
   const auto odd = [](ModelConfig& c) {

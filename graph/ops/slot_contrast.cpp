@@ -29,8 +29,7 @@ std::vector<TensorSpec> SlotContrast::infer(std::span<const TensorSpec> x) const
 }
 
 Needs SlotContrast::needs(std::span<const TensorSpec> x, const Caps&) const {
-  return {.forward_scratch = TermSum(push_for(x[0].shape, 0).count).scratch_bytes(),
-          .outputs_for_backward = 0};
+  return {.forward_scratch = TermSum(push_for(x[0].shape, 0).count).scratch_bytes(), .outputs_for_backward = 0};
 }
 
 void SlotContrast::record_forward(Recorder& recorder, const Forward& io) const {
@@ -42,8 +41,8 @@ void SlotContrast::record_forward(Recorder& recorder, const Forward& io) const {
 
 void SlotContrast::record_backward(Recorder& recorder, const Backward& io) const {
   const auto push = push_for(io.x[0].shape(), io.accumulates(0));
-  recorder.dispatch_flat("slot_contrast.backward", push.count,
-                         {io.x[0].slice, io.dy[0].slice, io.dx[0].slice}, push);
+  recorder.dispatch_flat("slot_contrast.backward", push.count, {io.x[0].slice, io.dy[0].slice, io.dx[0].slice},
+                         push);
 }
 
 Value slot_contrast(Value location) {

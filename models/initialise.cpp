@@ -49,6 +49,12 @@ std::vector<float> initial_values(const Initial& initial, int64_t count, uint64_
     if (initial.kind == Initial::Kind::kNormal) draw = normal(random);
     v = static_cast<float>(initial.scale * draw);
   }
+  for (const Initial::Patch& patch : initial.patches) {
+    for (int64_t i = 0; i < patch.count; ++i) {
+      float& v = values.at(static_cast<size_t>(patch.first + i * patch.stride));
+      v = static_cast<float>(patch.times * v + patch.plus);
+    }
+  }
   return values;
 }
 

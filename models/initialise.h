@@ -12,8 +12,16 @@ namespace vkopple {
 /// area.
 struct Initial {
   enum class Kind { kUniform, kNormal, kConstant };
+  /// `count` values from `first` on, `stride` apart: each becomes times · what was drawn + plus.
+  struct Patch {
+    int64_t first = 0, stride = 1, count = 0;
+    double times = 1, plus = 0;
+  };
   Kind kind = Kind::kConstant;
   double scale = 0;  ///< half-width of the uniform interval around 0, standard deviation, or the constant
+  std::vector<Patch> patches = {};  ///< in turn, each upon what those before it left
+
+  void patch(const Patch& p) { patches.push_back(p); }
 
   static Initial constant(double value) { return {Kind::kConstant, value}; }
   /// U(±1/√fan_in): the framework default of biases, and of weights.

@@ -104,10 +104,11 @@ Value LayerFactory::out_conv(Value x, const std::string& name, int64_t channels,
   return conv2d(x, w, b, {.padding = 1});
 }
 
-Value LayerFactory::linear(Value x, const std::string& name, int64_t outputs, const Initial& weight) {
+Value LayerFactory::linear(Value x, const std::string& name, int64_t outputs, const Initial& weight,
+                           const std::optional<Initial>& bias) {
   const int64_t inputs = x.shape().back(0);
   const Value w = parameter(name + ".weight", {outputs, inputs}, weight);
-  const Value b = parameter(name + ".bias", {outputs}, Initial::framework(inputs));
+  const Value b = parameter(name + ".bias", {outputs}, bias.value_or(Initial::framework(inputs)));
   return vkopple::linear(x, w, b);
 }
 

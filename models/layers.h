@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,9 @@ class LayerFactory {
   Value conv_transpose(Value x, const std::string& name, int64_t channels, int64_t kernel);
   /// The last 3×3 convolution, started with `initial`.
   Value out_conv(Value x, const std::string& name, int64_t channels, const Initial& initial);
-  Value linear(Value x, const std::string& name, int64_t outputs, const Initial& weight);
+  /// The bias starts as the framework's default does, or as given.
+  Value linear(Value x, const std::string& name, int64_t outputs, const Initial& weight,
+               const std::optional<Initial>& bias = std::nullopt);
 
   /// dropout(batch_norm(leaky_relu(x))) with the statistics of `groups` runs of samples, each a call of its
   /// own.

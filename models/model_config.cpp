@@ -23,6 +23,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.integer("object_width", c.object_width, 1, kMostChannels);
   object.integer("imagine_width", c.imagine_width, 1, kMostChannels);
   object.integer("lstm", c.lstm, 1, 4096);
+  object.integer("slot_counters", c.slot_counters, 0, kMostSlots);
   object.number("max_depth", c.max_depth, 0.01, 10000);
   object.number("max_height", c.max_height, 0.01, 10000);
   object.number("beta", c.beta, 0, 1000);
@@ -40,6 +41,11 @@ ModelConfig read_model_config(JsonObject object) {
   if (c.identity > c.code) {
     object.refuse("identity", "is " + std::to_string(c.identity) + "; give at most code, which is " +
                                   std::to_string(c.code));
+  }
+  if (c.slot_counters > c.identity || c.slot_counters >= c.lstm) {
+    object.refuse("slot_counters", "is " + std::to_string(c.slot_counters) +
+                                       "; give at most identity, and fewer than lstm, which are " +
+                                       std::to_string(c.identity) + " and " + std::to_string(c.lstm));
   }
   if (c.orientation != Orientation::kYaw) {
     if (c.relaxed)
@@ -63,6 +69,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"object_width", c.object_width},
           {"imagine_width", c.imagine_width},
           {"lstm", c.lstm},
+          {"slot_counters", c.slot_counters},
           {"max_depth", c.max_depth},
           {"max_height", c.max_height},
           {"beta", c.beta},

@@ -46,6 +46,8 @@ struct ModelConfig {
   int object_width = 64;
   int imagine_width = 8;
   int lstm = 256;
+  int slot_counters =
+      0;  ///< hidden units of the LSTM that count its steps from the start; see models/slot_counters.h
   double max_depth = 7.2;
   double max_height = 5.0;
   double beta = 1.0;         ///< how fast the splat's weight falls with distance

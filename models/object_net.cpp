@@ -14,6 +14,7 @@
 #include "graph/ops/resize_bilinear.h"
 #include "graph/ops/slice.h"
 #include "models/blocks.h"
+#include "models/slot_counters.h"
 
 namespace vkopple {
 namespace {
@@ -72,14 +73,14 @@ Value read_slots(LayerFactory& layers, const ModelConfig& config, Value top) {
   const Value x = layers.graph().reshape(to_row_major(top), row_major({samples, features}));
   const Shape ih{4 * hidden, features};
   const Shape hh{4 * hidden, hidden};
-  const Value w_ih =
-      layers.parameter("rnn.weight_ih_l0", ih, Initial::kaiming_normal(features, std::sqrt(2.0)));
-  const Value w_hh = layers.parameter("rnn.weight_hh_l0", hh, Initial::kaiming_normal(hidden, std::sqrt(2.0)));
-  const Value b_ih = layers.parameter("rnn.bias_ih_l0", {4 * hidden}, Initial::framework(hidden));
-  const Value b_hh = layers.parameter("rnn.bias_hh_l0", {4 * hidden}, Initial::framework(hidden));
+  const SlotCounters start = slot_counters(config, features);
+  const Value w_ih = layers.parameter("rnn.weight_ih_l0", ih, start.weight_ih);
+  const Value w_hh = layers.parameter("rnn.weight_hh_l0", hh, start.weight_hh);
+  const Value b_ih = layers.parameter("rnn.bias_ih_l0", {4 * hidden}, start.bias_ih);
+  const Value b_hh = layers.parameter("rnn.bias_hh_l0", {4 * hidden}, start.bias_hh);
   const Value h = leaky_relu(lstm(x, w_ih, w_hh, b_ih, b_hh, config.slots), kSlope);
   const int64_t numbers = 3 + config.orientation_numbers() + config.code;
-  return layers.linear(h, "lin.1", numbers, Initial::framework(hidden));
+  return layers.linear(h, "lin.1", numbers, start.head_weight, start.head_bias);
 }
 
 /// Mask logits (K'·B, 1, H, W), row-major, of codes (K', B, code); samples are ordered slot, image.

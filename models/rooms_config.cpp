@@ -18,6 +18,7 @@ RoomsConfig read_rooms_config(JsonObject object, const RoomsConfig& base) {
   object.number("pan", c.pan, 0, 3);
   object.choice("textures", c.textures, kRoomTexturesNames);
   object.number("room_contrast", c.room_contrast, 0, 1);
+  object.boolean("sectors", c.sectors);
   object.choices("shapes", c.shapes, kRoomShapeNames);
   object.integer("frames", c.frames, 3, 100);
   object.integer("supersample", c.supersample, 1, 8);
@@ -38,6 +39,7 @@ nlohmann::ordered_json write_rooms_config(const RoomsConfig& c) {
           {"pan", c.pan},
           {"textures", kRoomTexturesNames[static_cast<std::size_t>(c.textures)]},
           {"room_contrast", c.room_contrast},
+          {"sectors", c.sectors},
           {"shapes", shapes},
           {"frames", c.frames},
           {"supersample", c.supersample}};

@@ -38,6 +38,9 @@ struct RoomsConfig {
   double pan = 0.12;                      ///< the camera's largest turn
   RoomTextures textures = RoomTextures::kMixed;
   double room_contrast = 1;  ///< of the colours of walls, floor and ceiling: 1 as drawn, 0 their mean
+  /// The view is cut evenly from left to right into as many parts as there are objects, and each keeps to one
+  /// of its own.
+  bool sectors = false;
   std::vector<RoomShape> shapes = every_shape();
   int frames = 7;       ///< of a scene
   int supersample = 4;  ///< rays along each side of a pixel

@@ -4,9 +4,11 @@
 
 namespace vkopple {
 
-/// −(mean over the batch of Σ_{k<l} min(‖X_k − X_l‖₁, 1)), of shape (1): slots of one image are pushed apart
-/// until they are a scene unit from each other, as the collapse loss (§6) does with those of two images. It is
-/// 0 of one slot. location X: row-major (B, K, 3). Where the norm is above 1 its gradient is 0.
+/// −(mean over the batch of Σ_{k<l} min(|x_k − x_l|, 1)), of shape (1): slots of one image are pushed apart to
+/// the left and right of each other, until they are a scene unit apart, as the collapse loss (§6) does with
+/// those of two images. Only x counts of their locations: height and distance, which hardly tell objects on a
+/// floor apart in an image, would give way first. It is 0 of one slot. location: row-major (B, K, 3). Beyond a
+/// distance of 1 its gradient is 0.
 class SlotContrast : public Op {
  public:
   std::string_view name() const override { return "slot_contrast"; }

@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 
-// loss = -(1 / B) sum over b and k < l of min(|x_bk - x_bl|_1, 1); x (B, K, 3). Where a norm n <= 1, its slope by x_bk is
-// sign(x_bk - x_bl). One invocation takes one (b, k).
+// loss = -(1 / B) sum over b and k < l of min(|x_bk - x_bl|, 1), x the first of (B, K, 3)'s coordinates. Where that distance
+// is at most 1, its slope by x_bk is sign(x_bk - x_bl). One invocation takes one (b, k).
 layout(push_constant) uniform Push {
   uint count;  // B K
   uint slots;
@@ -20,26 +20,22 @@ READ1(1, dloss)
 WRITE1(2, dx)
 #endif
 
-vec3 location(uint i) { return vec3(load1(x, 3 * i), load1(x, 3 * i + 1), load1(x, 3 * i + 2)); }
-
-float norm(vec3 d) { return dot(abs(d), vec3(1)); }
+float across(uint i) { return load1(x, 3 * i); }
 
 void main() {
   uint i = flat_index();
   if (i >= p.count) return;
   uint first = i - i % p.slots;  // slot 0 of this image
-  vec3 here = location(i);
+  float here = across(i), sum = 0.0;
 #ifdef FORWARD
-  float sum = 0.0;
-  for (uint l = first; l < i; ++l) sum += min(norm(here - location(l)), 1.0);
+  for (uint l = first; l < i; ++l) sum += min(abs(here - across(l)), 1.0);
   terms[i] = sum;
 #else
-  vec3 sum = vec3(0);
   for (uint l = first; l < first + p.slots; ++l) {
-    vec3 d = here - location(l);
-    if (norm(d) <= 1.0) sum += sign(d);
+    float d = here - across(l);
+    if (abs(d) <= 1.0) sum += sign(d);
   }
-  float factor = p.scale * load1(dloss, 0);
-  for (uint axis = 0; axis < 3; ++axis) add1(dx, 3 * i + axis, factor * sum[axis], p.accumulate)
+  vec3 slope = vec3(p.scale * load1(dloss, 0) * sum, 0, 0);
+  for (uint axis = 0; axis < 3; ++axis) add1(dx, 3 * i + axis, slope[axis], p.accumulate)
 #endif
 }

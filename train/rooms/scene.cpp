@@ -81,19 +81,40 @@ bool is_free(const Layout& layout, int frame) {
   return true;
 }
 
-/// How many objects have their middle within nine tenths of the angle of view.
+/// The part of the view, of `parts` even ones from left to right, that an object's middle is in; none beyond
+/// nine tenths of the angle of view.
+std::optional<int> sector_of(const Layout& layout, std::size_t object, int frame, double half_view, int parts) {
+  const auto at = layout.movers[object].at(frame);
+  const Vec3 seen = layout.cameras[static_cast<std::size_t>(frame)].see({at[0], at[1], kEyeHeight});
+  const double across = std::atan2(seen[0], seen[1]) / (0.9 * half_view);
+  if (std::abs(across) >= 1) return std::nullopt;
+  return static_cast<int>(0.5 * (across + 1) * parts);
+}
+
+/// How many objects are ahead of the camera.
 int count_ahead(const Layout& layout, int frame, double half_view) {
-  const RoomCamera& camera = layout.cameras[static_cast<std::size_t>(frame)];
   int ahead = 0;
-  for (const auto& mover : layout.movers) {
-    const auto at = mover.at(frame);
-    const Vec3 seen = camera.see({at[0], at[1], kEyeHeight});
-    if (std::abs(std::atan2(seen[0], seen[1])) < 0.9 * half_view) ++ahead;
-  }
+  for (std::size_t i = 0; i < layout.movers.size(); ++i)
+    ahead += sector_of(layout, i, frame, half_view, 1) ? 1 : 0;
   return ahead;
 }
 
-bool is_acceptable(const Layout& layout, double half_view) {
+/// Each object is in the same part of the view in all frames, and no other is in it.
+bool keep_to_sectors(const Layout& layout, double half_view) {
+  const auto objects = layout.movers.size();
+  std::vector<bool> taken(objects);
+  for (std::size_t i = 0; i < objects; ++i) {
+    const auto first = sector_of(layout, i, 0, half_view, static_cast<int>(objects));
+    if (!first || taken[static_cast<std::size_t>(*first)]) return false;
+    taken[static_cast<std::size_t>(*first)] = true;
+    for (int frame = 1; frame < static_cast<int>(layout.cameras.size()); ++frame)
+      if (sector_of(layout, i, frame, half_view, static_cast<int>(objects)) != first) return false;
+  }
+  return true;
+}
+
+bool is_acceptable(const Layout& layout, const RoomsConfig& config, double half_view) {
+  if (config.sectors && !keep_to_sectors(layout, half_view)) return false;
   int ahead = 0;
   const int frames = static_cast<int>(layout.cameras.size());
   // The last frame first: there things have moved farthest and most layouts fail.
@@ -245,7 +266,7 @@ Scene sample_scene(const RoomsConfig& config, double half_view, std::uint64_t se
   Random random(seed, index);
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const Layout layout = draw_layout(config, random);
-    if (is_acceptable(layout, half_view)) return furnish(layout, config, random);
+    if (is_acceptable(layout, config, half_view)) return furnish(layout, config, random);
   }
   throw Error(
       fmt::format("rooms: {} objects of size {} to {}, speed {} and {} frames leave no free place in {} "

@@ -89,8 +89,8 @@ struct Scene {
 
 /// The scene number `index` of `seed`, the same whatever was drawn before. Objects touch neither each other,
 /// the walls nor the camera in any frame, and two thirds of them or more are ahead of the camera, counted over
-/// all frames. `half_view`: half the horizontal angle of view, radians. Throws Error where the options leave no
-/// room for such a scene.
+/// all frames; with `sectors` each keeps to its part of the view. `half_view`: half the horizontal angle of
+/// view, radians. Throws Error where the options leave no room for such a scene.
 Scene sample_scene(const RoomsConfig& config, double half_view, std::uint64_t seed, std::uint64_t index);
 
 }  // namespace vkopple

@@ -105,6 +105,29 @@ TEST(RoomScene, OptionsAreObeyed) {
   }
 }
 
+TEST(RoomScene, EachObjectKeepsToItsSector) {
+  RoomsConfig config;
+  config.sectors = true;
+  config.frames = 3;
+  config.speed = 0.25;
+  for (std::uint64_t index = 0; index < 20; ++index) {
+    const Scene scene = sample_scene(config, kHalfView, 0, index);
+    std::set<int> taken;
+    for (const RoomObject& object : scene.objects) {
+      std::set<int> seen;
+      for (int frame = 0; frame < 3; ++frame) {
+        const Vec3 at = scene.cameras[static_cast<std::size_t>(frame)].see(object.position(frame));
+        const double across = std::atan2(at[0], at[1]) / (0.9 * kHalfView);
+        ASSERT_LT(std::abs(across), 1);
+        seen.insert(across < -1.0 / 3 ? 0 : across < 1.0 / 3 ? 1 : 2);
+      }
+      EXPECT_EQ(seen.size(), 1U);
+      taken.insert(seen.begin(), seen.end());
+    }
+    EXPECT_EQ(taken.size(), 3U);
+  }
+}
+
 TEST(RoomScene, RoomContrastFadesTheRoomAndNothingElse) {
   RoomsConfig config;
   const Scene vivid = sample_scene(config, kHalfView, 3, 9);

@@ -26,8 +26,9 @@ Commands::~Commands() {
 
 Slice Commands::absent(bool writes) {
   if (!absent_)
-    absent_ = std::make_unique<Buffer>(*device_, 2 * kAbsentBytes, MemoryKind::kDevice, "absent operand");
-  return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes);
+    absent_ = std::make_unique<Buffer>(*device_, 2 * (kAbsentBytes + kGuardBytes), MemoryKind::kDevice,
+                                       "absent operand");
+  return absent_->whole().sub(kGuardBytes + (writes ? kAbsentBytes : 0), kAbsentBytes);
 }
 
 void Commands::submit(VkCommandBuffer buffer, VkFence fence) const {

@@ -44,8 +44,8 @@ void require_limits(const Dispatch& d, const std::vector<BindingKind>& kinds, co
                               ? caps.max_texel_elements * texel_bytes(kinds[i], slice.storage)
                               : caps.max_storage_range;
     if (slice.bytes > most)
-      throw Error(fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; {}", d.shader, i,
-                              slice.bytes >> 20, caps.name, most >> 20, kAdvice));
+      throw Error(fmt::format("shader {}: operand {} has {} MiB, {} binds at most {} MiB; {}", d.shader, i,
+                              (slice.bytes + (1U << 20) - 1) >> 20, caps.name, most >> 20, kAdvice));
   }
 }
 

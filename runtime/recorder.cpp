@@ -215,7 +215,9 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
       if (writes(kinds[i])) written.push_back(commands_->absent(true));
       continue;
     }
-    (writes(kinds[i]) ? written : reads).push_back(bindings[i]);
+    // Parts of one scratch lie in each other's bands.
+    const bool exact = is_texel(kinds[i], caps().access);
+    (writes(kinds[i]) ? written : reads).push_back(exact ? bindings[i] : bound_part(bindings[i]));
   }
   order(reads, written);
   const VkDescriptorSet set = make_set(pipeline, bindings);

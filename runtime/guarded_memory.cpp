@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "runtime/bounds.h"
 #include "runtime/transfer.h"
 
@@ -26,7 +24,7 @@ std::vector<uint32_t> band_words(uint32_t band) {
 GuardedMemory::GuardedMemory(const Device& device)
     : device_(&device), arena_(device, MemoryKind::kDevice, "check") {}
 
-Slice GuardedMemory::allocate(uint64_t bytes, std::string what) {
+Slice GuardedMemory::allocate(uint64_t bytes, const std::string& what) {
   const Slice all = arena_.allocate(bytes + 2 * kGuardBytes);
   const Slice piece = all.sub(kGuardBytes, bytes);
   upload_values<uint32_t>(*device_, piece, std::vector<uint32_t>(bytes / 4, kNaNWord));

@@ -20,7 +20,7 @@ class GuardedMemory {
   explicit GuardedMemory(const Device& device);
 
   /// A piece filled with NaN. `what` names it in messages. Throws as Arena::allocate does.
-  Slice allocate(uint64_t bytes, std::string what);
+  Slice allocate(uint64_t bytes, const std::string& what);
   /// One line for each band that has changed since it was allocated or looked at last: "4 bytes changed beside
   /// output 0, the first 8 bytes beyond its end". Bands are mended.
   std::vector<std::string> damage();

@@ -130,7 +130,7 @@ class Recorder {
   /// timestamps hold. `bounds`: kGuarded only for memory that a GuardedMemory gave.
   explicit Recorder(const Device& device, bool timestamps = false, Bounds bounds = Bounds::kExact);
   /// Records nothing and needs no device: tells `sink` of every dispatch that a device of such caps would be
-  /// given. What refuses dispatches refuses them here too. Slices are not looked into.
+  /// given. What refuses dispatches refuses them here too. Slices are not looked into. `caps` must outlive it.
   Recorder(const Caps& caps, std::function<void(const Dispatch&)> sink);
   ~Recorder();
   Recorder(const Recorder&) = delete;

@@ -112,8 +112,8 @@ class Bench {
     }
   }
 
-  Operand place(const TensorSpec& spec, std::string what) {
-    Operand operand{spec, memory_.allocate(spec.bytes(), std::move(what))};
+  Operand place(const TensorSpec& spec, const std::string& what) {
+    Operand operand{spec, memory_.allocate(spec.bytes(), what)};
     operand.slice.storage = spec.storage;
     return operand;
   }

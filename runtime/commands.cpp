@@ -1,3 +1,4 @@
+#include "runtime/bounds.h"
 #include "runtime/device.h"
 #include "runtime/recorder.h"
 #include "runtime/vulkan_error.h"
@@ -25,9 +26,10 @@ Commands::~Commands() {
 }
 
 Slice Commands::absent(bool writes) {
+  constexpr uint64_t kAbsentWithBands = kAbsentBytes + 2 * kGuardBytes;
   if (!absent_)
-    absent_ = std::make_unique<Buffer>(*device_, 2 * kAbsentBytes, MemoryKind::kDevice, "absent operand");
-  return absent_->whole().sub(writes ? kAbsentBytes : 0, kAbsentBytes);
+    absent_ = std::make_unique<Buffer>(*device_, 2 * kAbsentWithBands, MemoryKind::kDevice, "absent operand");
+  return absent_->whole().sub((writes ? kAbsentWithBands : 0) + kGuardBytes, kAbsentBytes);
 }
 
 void Commands::submit(VkCommandBuffer buffer, VkFence fence) const {

@@ -8,6 +8,7 @@
 #include "runtime/cooperative_matrix.h"
 #include "runtime/instance.h"
 #include "runtime/quirks.h"
+#include "runtime/requirements.h"
 #include "runtime/vulkan_error.h"
 
 namespace vkopple {
@@ -16,7 +17,6 @@ namespace {
 /// Views at least this long serve every tensor that a storage binding reaches on the devices with small
 /// bindings.
 constexpr uint64_t kLargeTexelBuffer = uint64_t{1} << 26;
-constexpr uint32_t kPushConstantBytes = 128;
 constexpr uint32_t kMostRowLanes = 16;  ///< kMostLanes of row_store.glsl
 
 DeviceType type_of(VkPhysicalDeviceType type) {
@@ -163,7 +163,9 @@ Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
   found.caps.access = texel && found.caps.cpu() ? AccessPath::kTexel : AccessPath::kStorage;
   if (!has_compute_queue(device)) found.missing.emplace_back("a compute queue");
   if (properties.limits.maxPushConstantsSize < kPushConstantBytes)
-    found.missing.emplace_back("128 bytes of push constants");
+    found.missing.emplace_back(fmt::format("{} bytes of push constants", kPushConstantBytes));
+  if (properties.limits.maxPerStageDescriptorStorageBuffers < kMostBindings)
+    found.missing.emplace_back(fmt::format("{} storage buffers in a shader", kMostBindings));
   return found;
 }
 

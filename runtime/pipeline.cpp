@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "runtime/device.h"
+#include "runtime/guarded_shader.h"
 #include "runtime/pipeline_cache.h"
+#include "runtime/requirements.h"
 #include "runtime/vulkan_error.h"
 
 namespace vkopple {
@@ -14,12 +16,9 @@ constexpr uint32_t kZeroOutsideId = 100;
 constexpr uint32_t kSubgroupSizeId = 101;
 constexpr uint32_t kFloat16BindingsId = 102;
 constexpr uint32_t kRowStoresId = 103;
-constexpr uint32_t kPushConstantBytes = 128;
 
 VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
-  const bool texel =
-      access == AccessPath::kTexel && (kind == BindingKind::kRead4 || kind == BindingKind::kRead1);
-  return texel ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  return is_texel(kind, access) ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 }
 
 }  // namespace
@@ -56,8 +55,9 @@ PipelineSet::~PipelineSet() {
 }
 
 const Pipeline& PipelineSet::get(std::string_view shader, const std::vector<uint32_t>& constants,
-                                 uint32_t float16_bindings) {
-  const auto [entry, added] = pipelines_.try_emplace(Key{std::string(shader), constants, float16_bindings});
+                                 uint32_t float16_bindings, Bounds bounds) {
+  const auto [entry, added] =
+      pipelines_.try_emplace(Key{std::string(shader), constants, float16_bindings, bounds});
   if (added) {
     try {
       entry->second.shader = &find_shader(shader, device_->caps().access);
@@ -117,10 +117,13 @@ void PipelineSet::create(Pipeline& pipeline, const Key& key) {
   specialization.dataSize = values.size() * 4;
   specialization.pData = values.data();
 
+  std::vector<uint32_t> guarded;
+  if (key.bounds == Bounds::kGuarded) guarded = guarded_code(*pipeline.shader);
+  const std::span<const uint32_t> code = guarded.empty() ? pipeline.shader->code : guarded;
   VkShaderModuleCreateInfo module_info{};
   module_info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  module_info.codeSize = pipeline.shader->code.size_bytes();
-  module_info.pCode = pipeline.shader->code.data();
+  module_info.codeSize = code.size_bytes();
+  module_info.pCode = code.data();
   VkShaderModule module = VK_NULL_HANDLE;
   check(vkCreateShaderModule(device_->handle(), &module_info, nullptr, &module), "vkCreateShaderModule");
   VkComputePipelineCreateInfo info{};

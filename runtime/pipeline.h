@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/bounds.h"
 #include "runtime/shader_library.h"
 
 namespace vkopple {
@@ -39,7 +40,7 @@ class PipelineSet {
   /// from 100) are added. float16_bindings: bit b where binding b holds float16. Throws Error for an unknown
   /// shader.
   const Pipeline& get(std::string_view shader, const std::vector<uint32_t>& constants,
-                      uint32_t float16_bindings = 0);
+                      uint32_t float16_bindings = 0, Bounds bounds = Bounds::kExact);
   size_t size() const { return pipelines_.size(); }
 
  private:
@@ -47,6 +48,7 @@ class PipelineSet {
     std::string shader;
     std::vector<uint32_t> constants;
     uint32_t float16_bindings;
+    Bounds bounds;
     auto operator<=>(const Key&) const = default;
   };
   void create(Pipeline& pipeline, const Key& key);

@@ -39,9 +39,11 @@ uint32_t float16_mask(std::span<const Slice> bindings) {
 
 }  // namespace
 
-Recorder::Recorder(const Device& device, bool timestamps)
+Recorder::Recorder(const Device& device, bool timestamps, Bounds bounds)
     : device_(&device),
+      caps_(&device.caps()),
       timestamps_(timestamps && device.caps().timestamp_period > 0),
+      bounds_(bounds),
       commands_(std::make_unique<Commands>(device)) {
   if (timestamps_) {
     VkQueryPoolCreateInfo info{};
@@ -53,9 +55,12 @@ Recorder::Recorder(const Device& device, bool timestamps)
   begin_buffer();
 }
 
+Recorder::Recorder(const Caps& caps, std::function<void(const Dispatch&)> sink)
+    : caps_(&caps), sink_(std::move(sink)) {}
+
 Recorder::~Recorder() = default;
 
-const Caps& Recorder::caps() const { return device_->caps(); }
+const Caps& Recorder::caps() const { return *caps_; }
 
 void Recorder::begin_buffer() {
   VkCommandBufferAllocateInfo allocate{};
@@ -146,6 +151,14 @@ VkDescriptorSet Recorder::allocate_set(const Pipeline& pipeline) {
   return set;
 }
 
+/// What a storage buffer's descriptor names for a slice.
+Slice Recorder::bound_part(const Slice& slice) const {
+  if (bounds_ == Bounds::kExact) return slice;
+  if (slice.offset < kGuardBytes || slice.offset + slice.bytes + kGuardBytes > slice.buffer->bytes())
+    throw Error("a guarded recording was given memory without bands before and after it");
+  return {slice.buffer, slice.offset - kGuardBytes, slice.bytes + 2 * kGuardBytes, slice.storage};
+}
+
 VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Slice> bindings) {
   const VkDescriptorSet set = allocate_set(pipeline);
   const auto& kinds = pipeline.bindings;
@@ -160,17 +173,17 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
     write.dstSet = set;
     write.dstBinding = i;
     write.descriptorCount = 1;
-    const bool reads = kinds[i] == BindingKind::kRead4 || kinds[i] == BindingKind::kRead1;
-    if (reads && pipeline.shader->access == AccessPath::kTexel) {
+    if (is_texel(kinds[i], pipeline.shader->access)) {
       const bool wide = kinds[i] == BindingKind::kRead4;
       write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-      const uint64_t element = element_bytes(slice.storage) * (wide ? 4 : 1);
+      const uint64_t element = texel_bytes(kinds[i], slice.storage);
       views[i] =
           slice.buffer->view(texel_format(wide, slice.storage), slice.offset, slice.bytes / element * element);
       write.pTexelBufferView = &views[i];
     } else {
       write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-      buffers[i] = {slice.buffer->handle(), slice.offset, slice.bytes};
+      const Slice part = bound_part(slice);
+      buffers[i] = {part.buffer->handle(), part.offset, part.bytes};
       write.pBufferInfo = &buffers[i];
     }
   }
@@ -178,20 +191,22 @@ VkDescriptorSet Recorder::make_set(const Pipeline& pipeline, std::span<const Sli
   return set;
 }
 
+const std::vector<BindingKind>& Recorder::kinds_of(std::string_view shader) {
+  auto found = kinds_.find(shader);
+  if (found == kinds_.end())
+    found = kinds_.emplace(shader, binding_kinds(find_shader(shader, caps().access))).first;
+  return found->second;
+}
+
 void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& constants,
                         std::span<const Slice> bindings, const Push& push, Groups groups) {
-  const Pipeline& pipeline = device_->pipelines().get(shader, constants, float16_mask(bindings));
+  const Dispatch asked{shader, constants, bindings, push.bytes(), groups};
+  const bool none = std::any_of(groups.begin(), groups.end(), [](uint32_t n) { return n == 0; });
+  require_limits(asked, kinds_of(shader), caps());
+  if (none) return;
+  if (device_ == nullptr) return sink_(asked);
+  const Pipeline& pipeline = device_->pipelines().get(shader, constants, float16_mask(bindings), bounds_);
   const auto& kinds = pipeline.bindings;
-  if (bindings.size() != kinds.size())
-    throw Error(fmt::format("shader {} has {} bindings, {} were given", shader, kinds.size(), bindings.size()));
-  for (size_t i = 0; i < 3; ++i) {
-    if (groups[i] == 0) return;
-    if (groups[i] > caps().max_groups[i])
-      throw Error(
-          fmt::format("shader {} needs {} workgroups in one direction, {} allows {}; use a smaller --batch "
-                      "or image size",
-                      shader, groups[i], caps().name, caps().max_groups[i]));
-  }
   std::vector<Slice> reads;
   std::vector<Slice> written;
   for (size_t i = 0; i < bindings.size(); ++i) {
@@ -200,16 +215,9 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
       if (writes(kinds[i])) written.push_back(commands_->absent(true));
       continue;
     }
-    if (bindings[i].bytes > caps().max_storage_range)
-      throw Error(
-          fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; use a smaller --batch or "
-                      "image size",
-                      shader, i, bindings[i].bytes >> 20, caps().name, caps().max_storage_range >> 20));
-    if (bindings[i].storage == Storage::kFloat16 && !takes_float16(kinds[i]))
-      throw Error(fmt::format(
-          "shader {}: operand {} is float16, which is read and written by vectors of four channels only",
-          shader, i));
-    (writes(kinds[i]) ? written : reads).push_back(bindings[i]);
+    // Parts of one scratch lie in each other's bands.
+    const bool exact = is_texel(kinds[i], caps().access);
+    (writes(kinds[i]) ? written : reads).push_back(exact ? bindings[i] : bound_part(bindings[i]));
   }
   order(reads, written);
   const VkDescriptorSet set = make_set(pipeline, bindings);
@@ -268,6 +276,7 @@ void Recorder::dispatch_units(std::string_view shader, uint64_t units, const Uni
 }
 
 void Recorder::fill(const Slice& slice, uint32_t word) {
+  if (device_ == nullptr) return;
   order({}, std::span(&slice, 1));
   vkCmdFillBuffer(buffer_, slice.buffer->handle(), slice.offset, (slice.bytes + 3) / 4 * 4, word);
   recorded("fill");
@@ -277,6 +286,7 @@ void Recorder::copy(const Slice& from, const Slice& to) {
   if (from.storage != to.storage) throw Error("a copy between float32 and float16 was recorded");
   if (from.bytes != to.bytes)
     throw Error(fmt::format("a copy of {} bytes into {} bytes was recorded", from.bytes, to.bytes));
+  if (device_ == nullptr) return;
   order(std::span(&from, 1), std::span(&to, 1));
   const VkBufferCopy region{from.offset, to.offset, from.bytes};
   vkCmdCopyBuffer(buffer_, from.buffer->handle(), to.buffer->handle(), 1, &region);
@@ -284,12 +294,14 @@ void Recorder::copy(const Slice& from, const Slice& to) {
 }
 
 void Recorder::host_step(std::function<void()> run) {
+  if (device_ == nullptr) return;
   end_buffer();
   commands_->host_steps_.push_back({commands_->buffers_.size(), std::move(run)});
   begin_buffer();
 }
 
 void Recorder::begin_section() {
+  if (device_ == nullptr) return;
   if (chunk_flop_ > kChunkFlop || chunk_dispatches_ > kChunkDispatches) {
     end_buffer();
     begin_buffer();
@@ -302,6 +314,7 @@ void Recorder::end_section() { section_ = -1; }
 void Recorder::expect_work(double flop) { chunk_flop_ += flop; }
 
 std::unique_ptr<Commands> Recorder::finish() {
+  if (device_ == nullptr) return nullptr;
   end_buffer();
   return std::move(commands_);
 }

@@ -14,8 +14,10 @@
 #include <type_traits>
 #include <vector>
 
+#include "runtime/bounds.h"
 #include "runtime/buffer.h"
 #include "runtime/caps.h"
+#include "runtime/dispatch.h"
 #include "runtime/shader_library.h"
 
 namespace vkopple {
@@ -41,8 +43,6 @@ class Push {
   std::array<std::byte, 128> data_{};
   uint32_t bytes_ = 0;
 };
-
-using Groups = std::array<uint32_t, 3>;
 
 /// Whether a kernel's workgroups may store rows of vec4s, which then must start at even vec4s of what is
 /// written.
@@ -114,6 +114,7 @@ class Commands {
   uint32_t stamps_ = 0;  ///< queries that are written
   static constexpr uint64_t kAbsentBytes = 256;
   /// Bound where an optional operand is absent: one part where kernels would read, one where they would write.
+  /// Bands of kGuardBytes lie round the two.
   Slice absent(bool writes);
   std::unique_ptr<Buffer> absent_;
   size_t dispatches_ = 0;
@@ -126,12 +127,16 @@ class Commands {
 class Recorder {
  public:
   /// `timestamps`: Commands tell how long each command takes. Throws Error for more commands than the
-  /// timestamps hold.
-  explicit Recorder(const Device& device, bool timestamps = false);
+  /// timestamps hold. `bounds`: kGuarded only for memory that a GuardedMemory gave.
+  explicit Recorder(const Device& device, bool timestamps = false, Bounds bounds = Bounds::kExact);
+  /// Records nothing and needs no device: tells `sink` of every dispatch that a device of such caps would be
+  /// given. What refuses dispatches refuses them here too. Slices are not looked into. `caps` must outlive it.
+  Recorder(const Caps& caps, std::function<void(const Dispatch&)> sink);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
+  /// Of a recorder that has one.
   const Device& device() const { return *device_; }
   const Caps& caps() const;
 
@@ -167,23 +172,29 @@ class Recorder {
   /// Tells how much work follows (multiply-adds count two), for cutting into chunks.
   void expect_work(double flop);
 
-  /// Ends the recording.
+  /// Ends the recording; null without a device.
   std::unique_ptr<Commands> finish();
 
  private:
   /// Of dispatch_units; 0: it stores none.
   uint32_t rows_of_group(uint64_t units, const UnitRows& may) const;
+  const std::vector<BindingKind>& kinds_of(std::string_view shader);
   void begin_buffer();
   void end_buffer();
   void stamp();
   /// Told after each command that is recorded.
   void recorded(std::string_view name);
   void order(std::span<const Slice> reads, std::span<const Slice> writes);
+  Slice bound_part(const Slice& slice) const;
   VkDescriptorSet make_set(const Pipeline& pipeline, std::span<const Slice> bindings);
   VkDescriptorSet allocate_set(const Pipeline& pipeline);
 
-  const Device* device_;
-  bool timestamps_;
+  const Device* device_ = nullptr;
+  const Caps* caps_;
+  std::function<void(const Dispatch&)> sink_;
+  std::map<std::string, std::vector<BindingKind>, std::less<>> kinds_;  ///< by shader
+  bool timestamps_ = false;
+  Bounds bounds_ = Bounds::kExact;
   std::unique_ptr<Commands> commands_;
   VkCommandBuffer buffer_ = VK_NULL_HANDLE;
   std::vector<Slice> pending_reads_;

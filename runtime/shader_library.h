@@ -24,6 +24,11 @@ inline bool takes_float16(BindingKind kind) {
   return kind == BindingKind::kRead4 || kind == BindingKind::kWrite4;
 }
 
+/// Whether it is a texel buffer on that access path, else a storage buffer.
+inline bool is_texel(BindingKind kind, AccessPath access) {
+  return access == AccessPath::kTexel && (kind == BindingKind::kRead4 || kind == BindingKind::kRead1);
+}
+
 /// One compiled shader of the program. `name` is the file's stem, with ".variant" where the file has variants.
 struct ShaderCode {
   std::string_view name;

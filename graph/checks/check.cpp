@@ -11,6 +11,7 @@
 #include "graph/float16.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/guarded_memory.h"
 #include "runtime/transfer.h"
 
 namespace vkopple {
@@ -19,8 +20,7 @@ namespace {
 /// Most elements of one input whose derivative is taken numerically; larger tensors are sampled.
 constexpr size_t kMostProbes = 240;
 constexpr double kStep = 1e-5;
-/// NaN as float32, and as two float16.
-const float kNaN = std::bit_cast<float>(0x7fff7fffU);
+const float kNaN = std::bit_cast<float>(kNaNWord);
 
 std::vector<float> as_words(const TensorSpec& spec, const HostTensor& tensor) {
   std::vector<float> words(tensor.values.size());
@@ -74,11 +74,7 @@ Deviation compare(const std::vector<double>& got, const std::vector<double>& wan
 class Bench {
  public:
   Bench(const Device& device, const CheckCase& check, Storage activations)
-      : device_(device),
-        check_(check),
-        op_(*check.op),
-        activations_(activations),
-        arena_(device, MemoryKind::kDevice, "check") {
+      : device_(device), check_(check), op_(*check.op), activations_(activations), memory_(device) {
     for (const TensorSpec& spec : check.inputs) inputs_.push_back(stored_as(spec, activations));
     result_.op = op_.name();
     result_.label = check.label;
@@ -116,10 +112,9 @@ class Bench {
     }
   }
 
-  Operand place(const TensorSpec& spec) {
-    Operand operand{spec, arena_.allocate(spec.bytes())};
+  Operand place(const TensorSpec& spec, const std::string& what) {
+    Operand operand{spec, memory_.allocate(spec.bytes(), what)};
     operand.slice.storage = spec.storage;
-    write(operand, std::vector<float>(spec.bytes() / 4, kNaN));
     return operand;
   }
   void write(const Operand& operand, const std::vector<float>& words) {
@@ -128,7 +123,13 @@ class Bench {
   std::vector<float> read(const Operand& operand) { return download_values<float>(device_, operand.slice); }
   Slice scratch(uint64_t bytes) {
     if (bytes == 0) return {};
-    return place(row_major({static_cast<int64_t>((bytes + 3) / 4)})).slice;
+    return memory_.allocate((bytes + 3) / 4 * 4, "scratch");
+  }
+  /// Runs what was recorded and has a look at the guards.
+  void run(Recorder& recorder, const char* pass) {
+    recorder.finish()->run();
+    for (const std::string& damage : memory_.damage())
+      fail(fmt::format("[{}] wrote outside of its operands in {}: {}", op_.name(), pass, damage));
   }
 
   static int roundings_of(const TensorSpec& spec) { return spec.storage == Storage::kFloat16 ? 1 : 0; }
@@ -151,8 +152,9 @@ class Bench {
     const double rounded = kFloat16Roundoff * roundings;
     if (!(d.worst <= kWorstLimit + rounded && d.l2 <= kL2Limit + rounded)) {
       size_t at = 0;
-      for (size_t i = 0; i < want.size(); ++i)
-        if (!(std::abs(got[i] - want[i]) <= std::abs(got[at] - want[at]))) at = i;
+      const auto difference = [&](size_t i) { return std::abs(got[i] - want[i]); };
+      for (size_t i = 0; i < want.size() && !std::isnan(difference(at)); ++i)
+        if (!(difference(i) <= difference(at))) at = i;
       fail(fmt::format("{}: worst {:.2e}, L2 {:.2e}; element {} is {:.8g} and should be {:.8g}", what, d.worst,
                        d.l2, at, got[at], want[at]));
     }
@@ -175,8 +177,8 @@ class Bench {
   }
 
   void run_forward() {
-    for (size_t i = 0; i < x_.size(); ++i) input_.push_back(place(inputs_[i]));
-    for (const TensorSpec& spec : specs_) output_.push_back(place(spec));
+    for (size_t i = 0; i < x_.size(); ++i) input_.push_back(place(inputs_[i], fmt::format("input {}", i)));
+    for (size_t i = 0; i < specs_.size(); ++i) output_.push_back(place(specs_[i], fmt::format("output {}", i)));
     const HostTensors want = check_.reference(x_);
     if (!needs_.saved.empty()) {
       std::vector<Operand> unsaved;
@@ -184,7 +186,8 @@ class Bench {
       record_forward(unsaved);
       judge_forward("inference: ", want);
     }
-    for (const TensorSpec& spec : needs_.saved) saved_.push_back(place(spec));
+    for (size_t i = 0; i < needs_.saved.size(); ++i)
+      saved_.push_back(place(needs_.saved[i], fmt::format("saved tensor {}", i)));
     record_forward(saved_);
     judge_forward("", want);
   }
@@ -192,9 +195,9 @@ class Bench {
   void record_forward(const std::vector<Operand>& saved) {
     for (size_t i = 0; i < x_.size(); ++i) write(input_[i], as_words(inputs_[i], x_[i]));
     for (const Operand& y : output_) write(y, std::vector<float>(y.spec.bytes() / 4, kNaN));
-    Recorder recorder(device_);
+    Recorder recorder(device_, false, Bounds::kGuarded);
     op_.record_forward(recorder, {input_, output_, saved, scratch(needs_.forward_scratch)});
-    recorder.finish()->run();
+    run(recorder, "forward");
   }
 
   void judge_forward(const std::string& mode, const HostTensors& want) {
@@ -235,9 +238,9 @@ class Bench {
 
   std::vector<Operand> record_backward(const std::vector<Operand>& dx, uint8_t accumulate) {
     const std::vector<uint8_t> flags(dx.size(), accumulate);
-    Recorder recorder(device_);
+    Recorder recorder(device_, false, Bounds::kGuarded);
     op_.record_backward(recorder, {input_, output_, saved_, dy_, dx, flags, scratch(needs_.backward_scratch)});
-    recorder.finish()->run();
+    run(recorder, "backward");
     return dx;
   }
 
@@ -252,18 +255,19 @@ class Bench {
 
   void run_backward() {
     std::mt19937 random(77);
-    for (const Operand& y : output_) {
+    for (size_t i = 0; i < output_.size(); ++i) {
+      const Operand& y = output_[i];
       HostTensor r(y.spec.shape);
       for (double& v : r.values) v = uniform(random, -1, 1);
       round(y.spec, r);
-      dy_.push_back(place(y.spec));
+      dy_.push_back(place(y.spec, fmt::format("output {}'s gradient", i)));
       write(dy_.back(), as_words(y.spec, r));
       cotangent_.push_back(std::move(r));
     }
     poison_unneeded();
     std::vector<Operand> dx;
     for (size_t i = 0; i < x_.size(); ++i)
-      dx.push_back(wanted_[i] ? place(inputs_[i]) : Operand{inputs_[i], {}});
+      dx.push_back(wanted_[i] ? place(inputs_[i], fmt::format("gradient {}", i)) : Operand{inputs_[i], {}});
     record_backward(dx, 0);
     std::vector<HostTensor> first;
     for (size_t i = 0; i < x_.size(); ++i) {
@@ -320,7 +324,7 @@ class Bench {
   const Op& op_;
   Storage activations_;
   std::vector<TensorSpec> inputs_;
-  Arena arena_;
+  GuardedMemory memory_;
   CheckResult result_;
   HostTensors x_;
   std::vector<bool> wanted_;

@@ -84,8 +84,9 @@ bool has_activations(const CheckCase& check);
 
 /// Runs one case: outputs pre-filled with NaN, forward against the reference (and without saved tensors, as in
 /// inference), padding lanes zero, gradients against finite differences, then backward again onto existing
-/// gradients with the accumulate flag, expecting the sum.
-/// `activations`: how NC4HW4 tensors are stored; inputs are rounded to it before the reference sees them.
+/// gradients with the accumulate flag, expecting the sum. All memory lies between bands (GuardedMemory) that
+/// must not change. `activations`: how NC4HW4 tensors are stored; inputs are rounded to it before the reference
+/// sees them.
 CheckResult run_check(const Device& device, const CheckCase& check, Storage activations = Storage::kFloat32);
 
 /// An op and its cases; the build finds graph/checks/<op>.cpp, which defines `void check_<op>(CheckList&)`.

@@ -18,6 +18,7 @@
 #include "runtime/device.h"
 #include "runtime/transfer.h"
 #include "tests/support/conv_reference.h"
+#include "tests/support/guarded.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -41,8 +42,8 @@ Values draw(const TensorSpec& spec, uint32_t seed) {
   return values;
 }
 
-Slice place(const Device& device, Arena& arena, const TensorSpec& spec, const Values& values) {
-  Slice slice = arena.allocate(spec.bytes());
+Slice place(const Device& device, GuardedMemory& memory, const TensorSpec& spec, const Values& values) {
+  Slice slice = memory.allocate(spec.bytes(), "an operand");
   slice.storage = spec.storage;
   upload_values<float>(device, slice, to_layout(spec, values));
   return slice;
@@ -84,7 +85,7 @@ class Problem {
       : device_(device),
         shape_(s),
         direction_(direction),
-        arena_(device, MemoryKind::kDevice, "conv_cooperative_test"),
+        memory_(device),
         w_spec_(row_major({s.co, s.ci, s.kernel, s.kernel})) {
     const bool forward = direction == ConvDirection::kForward;
     const TensorSpec x = channels4({s.n, s.ci, s.h, s.w});
@@ -99,15 +100,15 @@ class Problem {
   }
 
   Values run(std::string_view kernel, uint32_t accumulate, bool has_bias = true) {
-    const ConvOperands operands{.in = place(device_, arena_, in_spec_, in_),
-                                .w = place(device_, arena_, w_spec_, w_),
-                                .bias = has_bias ? place(device_, arena_, bias_spec_, bias_) : Slice{},
-                                .out = place(device_, arena_, out_spec_, before_),
+    const ConvOperands operands{.in = place(device_, memory_, in_spec_, in_),
+                                .w = place(device_, memory_, w_spec_, w_),
+                                .bias = has_bias ? place(device_, memory_, bias_spec_, bias_) : Slice{},
+                                .out = place(device_, memory_, out_spec_, before_),
                                 .accumulate = accumulate};
-    Recorder recorder(device_);
+    Recorder recorder(device_, false, Bounds::kGuarded);
     record_conv_product(recorder, shape_, direction_, operands,
-                        arena_.allocate(conv_product_scratch(shape_, direction_)), kernel);
-    recorder.finish()->run();
+                        memory_.allocate(conv_product_scratch(shape_, direction_), "scratch"), kernel);
+    test::run_guarded(recorder, memory_);
     const Values words = download_values<float>(device_, operands.out);
     require_zero_padding(words);
     return from_layout(out_spec_, words);
@@ -139,7 +140,7 @@ class Problem {
   const Device& device_;
   ConvShape shape_;
   ConvDirection direction_;
-  Arena arena_;
+  GuardedMemory memory_;
   TensorSpec in_spec_, w_spec_, bias_spec_, out_spec_;
   Values in_, w_, bias_, before_;
 };
@@ -164,20 +165,20 @@ void check_gradient(const Device& device, const ConvShape& s, Storage storage) {
   const auto weights = static_cast<size_t>(w_spec.shape.elements());
   const Values x = draw(x_spec, 1);
   const Values dy = draw(dy_spec, 2);
-  Arena arena(device, MemoryKind::kDevice, "conv_cooperative_test");
-  const Slice x_slice = place(device, arena, x_spec, x);
-  const Slice dy_slice = place(device, arena, dy_spec, dy);
+  GuardedMemory memory(device);
+  const Slice x_slice = place(device, memory, x_spec, x);
+  const Slice dy_slice = place(device, memory, dy_spec, dy);
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const Slice dw = place(device, arena, w_spec, Values(weights, nan));
+  const Slice dw = place(device, memory, w_spec, Values(weights, nan));
   const uint64_t bytes = weight_gradient_scratch(s, device.caps(), WeightGradientKernel::kCooperative);
   const TensorSpec scratch_spec = row_major({static_cast<int64_t>(bytes / 4)});
-  const Slice scratch = place(device, arena, scratch_spec, Values(bytes / 4, nan));
+  const Slice scratch = place(device, memory, scratch_spec, Values(bytes / 4, nan));
   Sums sums(weights);
   for (const uint32_t accumulate : {0U, 1U}) {
-    Recorder recorder(device);
+    Recorder recorder(device, false, Bounds::kGuarded);
     record_weight_gradient(recorder, s, x_slice, dy_slice, dw, accumulate, scratch,
                            WeightGradientKernel::kCooperative);
-    recorder.finish()->run();
+    test::run_guarded(recorder, memory);
     const Values half_x = rounded(x);
     const Values half_dy = rounded(dy);
     test::each_product(s,

@@ -12,6 +12,7 @@
 #include "runtime/error.h"
 #include "runtime/transfer.h"
 #include "tests/support/conv_reference.h"
+#include "tests/support/guarded.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -63,9 +64,9 @@ void check_problem(const Device& device, const Problem& p, const std::string& ke
   const Values w = draw(p.w, 2);
   const Values bias = draw(p.bias, 3);
   const Values before = draw(p.out, 4);
-  Arena arena(device, MemoryKind::kDevice, "conv_product_test");
+  GuardedMemory memory(device);
   const auto place = [&](const TensorSpec& spec, const Values& values) {
-    const Slice slice = arena.allocate(spec.bytes());
+    const Slice slice = memory.allocate(spec.bytes(), "an operand");
     upload_values<float>(device, slice, to_layout(spec, values));
     return slice;
   };
@@ -74,10 +75,10 @@ void check_problem(const Device& device, const Problem& p, const std::string& ke
                               .bias = place(p.bias, bias),
                               .out = place(p.out, before),
                               .accumulate = 1};
-  Recorder recorder(device);
+  Recorder recorder(device, false, Bounds::kGuarded);
   record_conv_product(recorder, p.shape, p.direction, operands,
-                      arena.allocate(conv_product_scratch(p.shape, p.direction)), kernel);
-  recorder.finish()->run();
+                      memory.allocate(conv_product_scratch(p.shape, p.direction), "scratch"), kernel);
+  test::run_guarded(recorder, memory);
   const Values got = from_layout(p.out, download_values<float>(device, operands.out));
   const std::vector<double> want = expected(p, in, w, bias, before);
   double worst = 0;

@@ -9,6 +9,7 @@
 #include "graph/matmul/linear_product.h"
 #include "runtime/transfer.h"
 #include "tests/support/gpu_caps.h"
+#include "tests/support/guarded.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -55,7 +56,7 @@ class LinearSharedTest : public testing::TestWithParam<LinearPart> {
   void open(const Device& device, const Product& product) {
     device_ = &device;
     product_ = product;
-    arena_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "test");
+    memory_ = std::make_unique<GuardedMemory>(device);
     const LinearPush& p = product.push;
     x_ = draw(p.x_offset + p.rows * p.inputs, 1);
     w_ = draw(p.outputs * p.inputs, 2);
@@ -71,9 +72,9 @@ class LinearSharedTest : public testing::TestWithParam<LinearPart> {
 
   Values run(const LinearTile& tile) {
     upload_values<float>(*device_, operands_.out, before_);
-    Recorder recorder(*device_);
+    Recorder recorder(*device_, false, Bounds::kGuarded);
     record_linear_shared(recorder, GetParam(), product_.push, operands_, tile);
-    recorder.finish()->run();
+    test::run_guarded(recorder, *memory_);
     return download_values<float>(*device_, operands_.out);
   }
 
@@ -114,12 +115,12 @@ class LinearSharedTest : public testing::TestWithParam<LinearPart> {
     return values;
   }
   Slice place(const Values& values) {
-    const Slice slice = arena_->allocate(values.size() * 4);
+    const Slice slice = memory_->allocate(values.size() * 4, "an operand");
     upload_values<float>(*device_, slice, values);
     return slice;
   }
 
-  std::unique_ptr<Arena> arena_;
+  std::unique_ptr<GuardedMemory> memory_;
 };
 
 /// Each of up to 290 additions rounds a partial sum below 32 by at most 9.6e-7, each product below 1 by 3e-8.

@@ -11,6 +11,7 @@
 #include "runtime/device.h"
 #include "runtime/transfer.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/guarded.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -61,8 +62,8 @@ void expect_close(const std::vector<float>& got, const std::vector<double>& want
         << "element " << i << " is " << got[i] << " and should be " << want[i];
 }
 
-Slice place(const Device& device, Arena& arena, const std::vector<float>& values) {
-  const Slice slice = arena.allocate(values.size() * 4);
+Slice place(const Device& device, GuardedMemory& memory, const std::vector<float>& values) {
+  const Slice slice = memory.allocate(values.size() * 4, "an operand");
   upload_values<float>(device, slice, values);
   return slice;
 }
@@ -84,17 +85,17 @@ void check(const Device& device, const ConvShape& s, WeightGradientKernel kernel
   const TensorSpec dy_spec = channels4({s.n, s.co, s.ho, s.wo});
   const auto x = draw(x_spec.shape.elements(), 1);
   const auto dy = draw(dy_spec.shape.elements(), 2);
-  Arena arena(device, MemoryKind::kDevice, "weight gradient test");
-  const Slice x_slice = place(device, arena, to_layout(x_spec, x));
-  const Slice dy_slice = place(device, arena, to_layout(dy_spec, dy));
+  GuardedMemory memory(device);
+  const Slice x_slice = place(device, memory, to_layout(x_spec, x));
+  const Slice dy_slice = place(device, memory, to_layout(dy_spec, dy));
   auto want = reference(s, x, dy);
-  const Slice dw = place(device, arena, std::vector<float>(want.size(), kNaN));
+  const Slice dw = place(device, memory, std::vector<float>(want.size(), kNaN));
   const uint64_t bytes = weight_gradient_scratch(s, device.caps(), kernel);
-  const Slice scratch = place(device, arena, std::vector<float>(bytes / 4, kNaN));
+  const Slice scratch = place(device, memory, std::vector<float>(bytes / 4, kNaN));
   for (uint32_t accumulate : {0U, 1U}) {
-    Recorder recorder(device);
+    Recorder recorder(device, false, Bounds::kGuarded);
     record_weight_gradient(recorder, s, x_slice, dy_slice, dw, accumulate, scratch, kernel);
-    recorder.finish()->run();
+    test::run_guarded(recorder, memory);
     if (accumulate == 1)
       for (double& v : want) v *= 2;
     expect_close(download(device, dw, want.size()), want, limit);
@@ -164,15 +165,15 @@ void check_bias(const Device& device, const Shape& shape) {
   std::vector<double> want(static_cast<size_t>(shape[1]), 0.0);
   const auto image = static_cast<size_t>(shape[2] * shape[3]);
   for (size_t i = 0; i < dy.size(); ++i) want[i / image % want.size()] += static_cast<double>(dy[i]);
-  Arena arena(device, MemoryKind::kDevice, "bias gradient test");
-  const Slice dy_slice = place(device, arena, to_layout(spec, dy));
-  const Slice db = place(device, arena, std::vector<float>(want.size(), kNaN));
+  GuardedMemory memory(device);
+  const Slice dy_slice = place(device, memory, to_layout(spec, dy));
+  const Slice db = place(device, memory, std::vector<float>(want.size(), kNaN));
   const uint64_t bytes = bias_gradient_scratch(spec, device.caps());
-  const Slice scratch = place(device, arena, std::vector<float>(bytes / 4, kNaN));
+  const Slice scratch = place(device, memory, std::vector<float>(bytes / 4, kNaN));
   for (uint32_t accumulate : {0U, 1U}) {
-    Recorder recorder(device);
+    Recorder recorder(device, false, Bounds::kGuarded);
     record_bias_gradient(recorder, spec, dy_slice, db, accumulate, scratch);
-    recorder.finish()->run();
+    test::run_guarded(recorder, memory);
     if (accumulate == 1)
       for (double& v : want) v *= 2;
     expect_close(download(device, db, want.size()), want, 2e-6);

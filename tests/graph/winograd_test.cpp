@@ -14,6 +14,7 @@
 #include "runtime/transfer.h"
 #include "tests/support/conv_reference.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/guarded.h"
 #include "tests/support/test_device.h"
 
 namespace vkopple {
@@ -93,7 +94,7 @@ class Problem {
         x_(draw(x_spec_.shape.elements(), 1)),
         y_(draw(y_spec_.shape.elements(), 2)),
         w_(draw(w_spec_.shape.elements(), 3)),
-        arena_(device, MemoryKind::kDevice, "winograd test") {}
+        memory_(device) {}
 
   /// Onto NaN with a bias, then added to what that left.
   void check_product(ConvDirection direction, WinogradTile tile) {
@@ -114,9 +115,9 @@ class Problem {
     const Slice scratch = scratch_of(convolution_scratch(s_, direction, device_.caps(), kernel_of(tile)));
     for (const uint32_t accumulate : {0U, 1U}) {
       operands.accumulate = accumulate;
-      Recorder recorder(device_);
+      Recorder recorder(device_, false, Bounds::kGuarded);
       record_convolution(recorder, s_, direction, operands, scratch, kernel_of(tile));
-      recorder.finish()->run();
+      test::run_guarded(recorder, memory_);
       if (accumulate == 1)
         for (double& v : want) v *= 2;
       expect_close(from_layout(out_spec, download_values<float>(device_, out)), want, product_limits(tile));
@@ -133,9 +134,9 @@ class Problem {
     const Slice dw = place(Values(w_.size(), kNaN));
     const Slice scratch = scratch_of(convolution_weight_gradient_scratch(s_, device_.caps(), kernel_of(tile)));
     for (const uint32_t accumulate : {0U, 1U}) {
-      Recorder recorder(device_);
+      Recorder recorder(device_, false, Bounds::kGuarded);
       record_convolution_weight_gradient(recorder, s_, x, dy, dw, accumulate, scratch, kernel_of(tile));
-      recorder.finish()->run();
+      test::run_guarded(recorder, memory_);
       if (accumulate == 1)
         for (double& v : want) v *= 2;
       auto got = download_values<float>(device_, dw);
@@ -146,7 +147,7 @@ class Problem {
 
  private:
   Slice place(const Values& values) {
-    const Slice slice = arena_.allocate(values.size() * 4);
+    const Slice slice = memory_.allocate(values.size() * 4, "an operand");
     upload_values<float>(device_, slice, values);
     return slice;
   }
@@ -156,7 +157,7 @@ class Problem {
   ConvShape s_;
   TensorSpec x_spec_, y_spec_, w_spec_;
   Values x_, y_, w_;
-  Arena arena_;
+  GuardedMemory memory_;
 };
 
 void check_shape(const Device& device, const ConvShape& s) {

@@ -20,6 +20,8 @@ namespace vkopple {
 namespace {
 
 constexpr int kProbeBatch = 16;
+/// What a process grew by beyond the plan in a step of `full` on lavapipe.
+constexpr uint64_t kKernelBytes = uint64_t{512} << 20;
 
 /// A number of portions with what it takes.
 struct Portions {
@@ -90,11 +92,14 @@ void require_memory(const Caps& caps, const Config& config, const std::vector<Pl
   }
 }
 
-uint64_t fitting_bytes(uint64_t free) { return free - free / 10; }
+uint64_t fitting_bytes(const Caps& caps, uint64_t free) {
+  const uint64_t left = free - free / 10;
+  return caps.cpu() ? left - std::min(left, kKernelBytes) : left;
+}
 
 std::vector<std::string> fit_memory(const Caps& caps, Config& config, const TrainingSetting& setting,
                                     uint64_t free) {
-  const uint64_t most = fitting_bytes(free);
+  const uint64_t most = fitting_bytes(caps, free);
   std::vector<std::string> chosen;
   const auto fit = [&](TrainingStage stage) {
     const Portions here = fewest_portions(caps, config, stage, setting, most);
@@ -103,9 +108,9 @@ std::vector<std::string> fit_memory(const Caps& caps, Config& config, const Trai
     const uint64_t bytes = stage_bytes(caps, config, stage, setting);
     if (bytes > most)
       throw Error(
-          fmt::format("{}, of which a tenth stays for others, even with a triplet at a time "
-                      "(--accumulate {}): use a smaller image size or model",
-                      too_little(caps, stage, bytes, free), stage.accumulate));
+          fmt::format("{}, of which {} may be taken, even with a triplet at a time (--accumulate {}): use a "
+                      "smaller image size or model",
+                      too_little(caps, stage, bytes, free), byte_text(most), stage.accumulate));
     chosen.push_back(fmt::format("stage {}: batch {} with --accumulate {} needs {} of {} free", stage.name,
                                  stage.batch, stage.accumulate, byte_text(bytes), byte_text(free)));
     return stage.accumulate;

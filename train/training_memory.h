@@ -33,12 +33,13 @@ uint64_t stage_bytes(const Caps& caps, const Config& config, const TrainingStage
 void require_memory(const Caps& caps, const Config& config, const std::vector<PlannedStage>& stages,
                     const TrainingSetting& setting, uint64_t free, bool resumed);
 
-/// Of `free` bytes what fit_memory() leaves to others: drivers, kernels that are compiled, transfers.
-uint64_t fitting_bytes(uint64_t free);
+/// Of `free` bytes those that fit_memory() has training take: nine tenths, and of a CPU's memory half a GiB
+/// less, in which kernels are compiled.
+uint64_t fitting_bytes(const Caps& caps, uint64_t free);
 
 /// Has every stage work off its batch in the fewest equal portions (TrainingStage::accumulate) with which it
-/// takes no more than fitting_bytes(free) in any process, and gives a line for each that tells what was chosen.
-/// Throws Error where even single triplets take more.
+/// takes no more than fitting_bytes(caps, free) in any process, and gives a line for each that tells what was
+/// chosen. Throws Error where even single triplets take more.
 std::vector<std::string> fit_memory(const Caps& caps, Config& config, const TrainingSetting& setting,
                                     uint64_t free);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <optional>
 
 #include "models/config.h"
 #include "train/atomic_file.h"
@@ -18,16 +19,19 @@ namespace {
 
 constexpr uint64_t kScenes = 20;
 
-/// All networks from step `depth_steps` on; two portions a step there.
-Config config(uint64_t depth_steps) {
+/// All networks from step `depth_steps` on, two portions a step; without a number the depth network alone.
+Config config(std::optional<uint64_t> depth_steps) {
+  const std::string depth = R"("name": "depth", "networks": ["depth"], "hypotheses": "background")";
+  const std::string stages =
+      depth_steps
+          ? fmt::format(R"({{{}, "steps": {}}}, {{"name": "all", "accumulate": 2}})", depth, *depth_steps)
+          : fmt::format("{{{}}}", depth);
   return Config::parse(fmt::format(R"({{
       "model": {{"height": 16, "width": 16, "slots": 2, "bins": 12, "code": 12, "depth_width": 2, "object_width": 4,
                  "imagine_width": 1, "lstm": 4}},
-      "training": {{"batch": 2, "stages": [
-        {{"name": "depth", "networks": ["depth"], "hypotheses": "background", "steps": {}}},
-        {{"name": "all", "accumulate": 2}}]}},
+      "training": {{"batch": 2, "stages": [{}]}},
       "rooms": {{"frames": 3, "supersample": 1}}}})",
-                                   depth_steps),
+                                   stages),
                        "soak");
 }
 
@@ -108,7 +112,7 @@ Holdings Holdings::now() {
 std::vector<SoakPhase> soak(const Device& device, const SoakOptions& options,
                             const std::function<void(const SoakPhase&)>& told) {
   const uint64_t third = options.steps / 3 / kSoakRound * kSoakRound;
-  const Config trained = config(third);
+  const Config trained = config(options.all_networks ? std::optional(third) : std::nullopt);
   const std::filesystem::path run = options.folder / "run", data = options.folder / "data";
   generate_rooms(
       device,
@@ -116,7 +120,7 @@ std::vector<SoakPhase> soak(const Device& device, const SoakOptions& options,
   write_png(options.folder / "image.png", RgbImage(24, 40));
   std::vector<SoakPhase> phases;
   Rounds rounds(phases, told);
-  train(device, trained, run, "rooms:1", 2 * third, rounds);
+  train(device, trained, run, "rooms:1", options.all_networks ? 2 * third : options.steps / 2, rounds);
   rounds.suffix = ", on files";
   train(device, trained, run, data, options.steps, rounds);
   rounds.begin("inference");

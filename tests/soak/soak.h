@@ -30,8 +30,9 @@ struct SoakPhase {
 
 struct SoakOptions {
   std::filesystem::path folder;  ///< empty, for runs and images
-  uint64_t steps = 0;            ///< of training, in all; at least 6 · kSoakRound
-  uint64_t inferences = 0;       ///< at least 2 · kSoakRound
+  uint64_t steps = 0;  ///< of training, in all; at least 6 · kSoakRound, without all networks 4 · kSoakRound
+  bool all_networks = true;  ///< false: the depth network alone, whose steps take a third of the time
+  uint64_t inferences = 0;   ///< at least 2 · kSoakRound
 };
 
 /// Steps after which training has done all that it does now and then (norms are told every 50 steps).

@@ -116,11 +116,23 @@ TEST(TrainingMemory, TooLittleIsRefusedBeforeAnyIsTaken) {
   expect_error([&] { begin(whole - 1, true); }, {"stage all needs", "keeps its batch"});
 }
 
-/// Of a device that would have just so much.
+/// The least that must be free for so much to be taken.
 uint64_t free_for(uint64_t fitting) {
-  uint64_t free = fitting;
-  while (fitting_bytes(free) < fitting) free += 10;
-  return free;
+  uint64_t too_little = 0, enough = 4 * fitting + (uint64_t{1} << 32);
+  while (enough - too_little > 1) {
+    const uint64_t middle = (too_little + enough) / 2;
+    (fitting_bytes(test_device().caps(), middle) < fitting ? too_little : enough) = middle;
+  }
+  return enough;
+}
+
+TEST(TrainingMemory, FittingLeavesSomethingToOthers) {
+  Caps caps = test_device().caps();
+  caps.type = DeviceType::kDiscrete;
+  EXPECT_EQ(fitting_bytes(caps, 1000), 900U);
+  caps.type = DeviceType::kCpu;
+  EXPECT_EQ(fitting_bytes(caps, 1000), 0U);
+  EXPECT_EQ(fitting_bytes(caps, uint64_t{10} << 30), (uint64_t{9} << 30) - (uint64_t{512} << 20));
 }
 
 TEST(TrainingMemory, FittedTrainingTakesTheFewestPortionsThatFit) {
@@ -138,11 +150,11 @@ TEST(TrainingMemory, FittedTrainingTakesTheFewestPortionsThatFit) {
     EXPECT_EQ(c.training.stages[1].batch, 8);
     EXPECT_LE(c.training.stages[0].accumulate, portions);
     if (portions == 8) break;
-    fit_memory(caps, c, {}, free - 20);
+    fit_memory(caps, c, {}, free - 1);
     EXPECT_EQ(c.training.stages[1].accumulate, 2 * portions);
   }
   c = config();
-  expect_error([&] { fit_memory(caps, c, {}, free_for(bytes_of(c, 1, 8)) - 20); },
+  expect_error([&] { fit_memory(caps, c, {}, free_for(bytes_of(c, 1, 8)) - 1); },
                {"stage all needs", "--accumulate 8", "image size"});
   // Stages that the configuration does not list.
   c = config();

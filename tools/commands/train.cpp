@@ -228,7 +228,8 @@ void add_train(CLI::App& app) {
             if (!o->fit_batch) o->batch = std::stoi(text);
           },
           "Triplets of a step, in every stage; auto: as many as the configuration says, in the fewest equal "
-          "portions (--accumulate) with which each stage takes at most nine tenths of the device's free memory")
+          "portions (--accumulate) with which each stage takes at most nine tenths of the device's free "
+          "memory, and half a GiB less on a CPU")
       ->type_name("auto|N")
       ->check(CLI::Validator(
           [batches](std::string& text) { return text == kFitBatch ? std::string() : batches(text); }, ""));

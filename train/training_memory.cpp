@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 
 #include "graph/execution_plan.h"
 #include "runtime/byte_text.h"
@@ -86,9 +85,10 @@ void require_memory(const Caps& caps, const Config& config, const std::vector<Pl
       throw Error(fmt::format(
           "{}; --accumulate {}, a triplet at a time, needs {} still: use a smaller image size or model",
           problem, fitting.count, byte_text(fitting.bytes)));
-    throw Error(fmt::format(
-        "{}; --batch {} --accumulate {} needs {} for the same training (--batch auto finds that by itself)",
-        problem, stage.batch, fitting.count, byte_text(fitting.bytes)));
+    throw Error(
+        fmt::format("{}; --batch {} --accumulate {} needs {} for the same training (--batch auto finds such a "
+                    "number by itself)",
+                    problem, stage.batch, fitting.count, byte_text(fitting.bytes)));
   }
 }
 

@@ -141,8 +141,10 @@ std::vector<std::string> growth(const SoakPhase& phase, uint64_t resident_slack)
     note_growth(lines, phase.name + ", " + kind, before == warm.vulkan.counts.end() ? 0 : before->second,
                 count);
   }
-  if (last.resident_bytes > warm.resident_bytes + resident_slack)
-    note_growth(lines, phase.name + ", bytes of resident memory", warm.resident_bytes, last.resident_bytes);
+  const Holdings& settled = phase.rounds[(phase.rounds.size() - 1) / 2];
+  if (last.resident_bytes > settled.resident_bytes + resident_slack)
+    lines.push_back(fmt::format("{}, bytes of resident memory: {} half way, {} at the end", phase.name,
+                                settled.resident_bytes, last.resident_bytes));
   return lines;
 }
 

@@ -44,8 +44,9 @@ inline constexpr uint64_t kSoakRound = 50;
 std::vector<SoakPhase> soak(const Device& device, const SoakOptions& options,
                             const std::function<void(const SoakPhase&)>& told = {});
 
-/// What of a phase grew after its first round, which is for warming up, a line each; memory of the host by more
-/// than `resident_slack` bytes.
+/// What of a phase grew after its first round, which is for warming up, a line each; memory of the host in the
+/// second half of the rounds, by more than `resident_slack` bytes: threads that read ahead come to their share
+/// of the allocator one by one.
 std::vector<std::string> growth(const SoakPhase& phase, uint64_t resident_slack);
 
 }  // namespace vkopple::test

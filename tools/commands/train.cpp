@@ -225,7 +225,7 @@ void add_train(CLI::App& app) {
           "--batch",
           [o](const std::string& text) {
             o->fit_batch = text == kFitBatch;
-            if (!o->fit_batch) o->batch = std::stoi(text);
+            if (!o->fit_batch) o->batch = std::stoi(text, nullptr, 0);  // as the check reads it
           },
           "Triplets of a step, in every stage; auto: as many as the configuration says, in the fewest equal "
           "portions (--accumulate) with which each stage takes at most nine tenths of the device's free "

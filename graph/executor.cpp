@@ -6,15 +6,15 @@
 #include <bit>
 #include <set>
 
-#include "graph/plan.h"
+#include "graph/kernels/add_scaled.h"
+#include "runtime/byte_text.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/memory_budget.h"
 #include "runtime/transfer.h"
 
 namespace vkopple {
 namespace {
-
-constexpr uint64_t kBlockBytes = uint64_t{1} << 30;
 
 Slice stored(Slice slice, const TensorSpec& spec) {
   slice.storage = spec.storage;
@@ -30,250 +30,85 @@ void watch(Recorder& recorder, const Watcher& watcher, const Node& node, size_t 
 
 }  // namespace
 
-/// Decides where every tensor lies: kept ones in an arena or a group, the rest by lifetime in shared blocks.
-/// Time counts forward nodes first, then backward steps, each of which may have nodes run again before it.
-class Executor::Layouter {
- public:
-  Layouter(Executor& executor, bool in_place) : e_(executor), graph_(*executor.graph_), in_place_(in_place) {
-    e_.data_.resize(graph_.value_count());
-    e_.gradients_.resize(graph_.value_count());
-    e_.node_memory_.resize(graph_.nodes().size());
-    data_life_.resize(graph_.value_count());
-    again_life_.resize(graph_.value_count());
-    gradient_life_.resize(graph_.value_count());
-    e_.again_.resize(graph_.value_count());
-  }
-
-  void run() {
-    place_kept();
-    follow_forward();
-    follow_backward();
-    want_roots();
-    if (in_place_) share_in_place();
-    place_shared();
-  }
-
- private:
-  struct Life {
-    int64_t first = -1;
-    int64_t last = -1;
-    void touch(int64_t time) {
-      first = first < 0 ? time : std::min(first, time);
-      last = std::max(last, time);
-    }
-  };
-  struct Pending {
-    MemoryUse use;
-    std::vector<Slice*> slices;  ///< several where one takes over the bytes of another
-  };
-  using Requests = std::vector<int64_t>;  ///< by root: index into pending_, or -1
-
-  size_t root(int id) const { return static_cast<size_t>(graph_.info(id).root); }
-  int64_t backward_time(size_t step) const { return again_time(step) + 1; }
-  int64_t again_time(size_t step) const { return static_cast<int64_t>(graph_.nodes().size() + 2 * step); }
-  std::string name_of(const Node& node, const std::string& part) const {
-    return fmt::format("{} {}, {}", node.scope, node.op->name(), part);
-  }
-
-  void place_kept() {
-    for (size_t id = 0; id < graph_.value_count(); ++id) {
-      const auto& info = graph_.info(static_cast<int>(id));
-      if (info.root != static_cast<int>(id)) continue;
-      switch (info.role) {
-        case Role::kParameter:
-        case Role::kState:
-        case Role::kGradient:
-          e_.data_[id] = e_.groups_->get(info.name, info.spec.bytes());
-          break;
-        case Role::kInput:
-          e_.data_[id] = e_.kept_->allocate(info.spec.bytes());
-          break;
-        case Role::kIntermediate:
-          if (info.kept) e_.data_[id] = e_.kept_->allocate(info.spec.bytes());
-          break;
-      }
-    }
-    for (int id : e_.backward_plan_.zero_first)
-      e_.gradients_[static_cast<size_t>(id)] = e_.data_[static_cast<size_t>(graph_.gradient_of(id))];
-  }
-
-  void follow_forward() {
-    for (size_t n = 0; n < graph_.nodes().size(); ++n) {
-      const Node& node = graph_.nodes()[n];
-      const auto time = static_cast<int64_t>(n);
-      for (int id : node.inputs) data_life_[root(id)].touch(time);
-      for (int id : node.outputs) data_life_[root(id)].touch(time);
-      want(name_of(node, "scratch"), e_.needs_[n].forward_scratch, {time, time},
-           e_.node_memory_[n].forward_scratch);
-    }
-  }
-
-  void follow_backward() {
-    const auto& steps = e_.backward_plan_.steps;
-    for (size_t s = 0; s < steps.size(); ++s) {
-      const auto& step = steps[s];
-      const Node& node = graph_.nodes()[step.node];
-      const Needs& needs = e_.needs_[step.node];
-      const int64_t time = backward_time(s);
-      for (size_t n : e_.recomputation_.before[s]) {
-        for (int id : graph_.nodes()[n].inputs) touch_in_backward(id, again_time(s));
-        for (int id : graph_.nodes()[n].outputs) touch_in_backward(id, again_time(s));
-      }
-      for (size_t i = 0; i < node.inputs.size(); ++i) {
-        if (in_mask(needs.inputs_for_backward, i)) touch_in_backward(node.inputs[i], time);
-        if (step.wants[i] != 0) gradient_life_[root(node.inputs[i])].touch(time);
-      }
-      for (size_t i = 0; i < node.outputs.size(); ++i) {
-        if (in_mask(needs.outputs_for_backward, i)) touch_in_backward(node.outputs[i], time);
-        gradient_life_[root(node.outputs[i])].touch(time);
-      }
-      want(name_of(node, "backward scratch"), needs.backward_scratch, {time, time},
-           e_.node_memory_[step.node].backward_scratch);
-      auto& saved = e_.node_memory_[step.node].saved;
-      for (const TensorSpec& spec : needs.saved) saved.push_back({spec, {}});
-      for (auto& operand : saved)
-        want(name_of(node, "saved"), operand.spec.bytes(), {static_cast<int64_t>(step.node), time},
-             operand.slice);
-    }
-    // It is set before everything.
-    if (e_.loss_) gradient_life_[root(e_.loss_.id())].touch(again_time(0));
-  }
-
-  void touch_in_backward(int id, int64_t time) {
-    (e_.recomputation_.again(graph_.info(id).root) ? again_life_ : data_life_)[root(id)].touch(time);
-  }
-
-  int64_t want(std::string what, uint64_t bytes, Life life, Slice& slice) {
-    if (bytes == 0) return -1;
-    pending_.push_back({{std::move(what), bytes, life.first, life.last}, {&slice}});
-    return static_cast<int64_t>(pending_.size()) - 1;
-  }
-
-  void want_roots() {
-    std::vector<std::string> names(graph_.value_count());
-    for (const Node& node : graph_.nodes())
-      for (size_t i = 0; i < node.outputs.size(); ++i)
-        names[root(node.outputs[i])] = name_of(node, fmt::format("output {}", i));
-    const auto want_all = [&](const std::vector<Life>& lives, const char* kind, std::vector<Slice>& slices) {
-      Requests requests(graph_.value_count(), -1);
-      for (size_t id = 0; id < graph_.value_count(); ++id)
-        if (lives[id].first >= 0 && !slices[id])
-          requests[id] =
-              want(names[id] + kind, graph_.info(static_cast<int>(id)).spec.bytes(), lives[id], slices[id]);
-      return requests;
-    };
-    data_ = want_all(data_life_, "", e_.data_);
-    again_ = want_all(again_life_, ", again", e_.again_);
-    gradient_ = want_all(gradient_life_, ", gradient", e_.gradients_);
-  }
-
-  /// Lets outputs and gradients take over the bytes of what ends with the very op that makes them. In order of
-  /// time, so that a chain of such ops shares one stretch.
-  void share_in_place() {
-    for (size_t n = 0; n < graph_.nodes().size(); ++n) take_over(n, data_, static_cast<int64_t>(n));
-    const auto& steps = e_.backward_plan_.steps;
-    for (size_t s = 0; s < steps.size(); ++s) {
-      for (size_t n : e_.recomputation_.before[s]) take_over(n, again_, again_time(s));
-      take_over_gradient(steps[s], backward_time(s));
-    }
-  }
-
-  void take_over(size_t n, Requests& requests, int64_t time) {
-    const Node& node = graph_.nodes()[n];
-    const int input = node.op->in_place();
-    if (input < 0) return;
-    const int from = node.inputs[static_cast<size_t>(input)];
-    const auto reads = [&](int id) { return root(id) == root(from); };
-    if (std::count_if(node.inputs.begin(), node.inputs.end(), reads) == 1)
-      merge(from, node.outputs[0], requests, time);
-  }
-
-  void take_over_gradient(const BackwardStep& step, int64_t time) {
-    const Node& node = graph_.nodes()[step.node];
-    const int input = node.op->gradient_in_place();
-    if (input < 0 || step.wants[static_cast<size_t>(input)] == 0 ||
-        step.accumulate[static_cast<size_t>(input)] != 0)
-      return;
-    merge(node.outputs[0], node.inputs[static_cast<size_t>(input)], gradient_, time);
-  }
-
-  /// Where `to` begins as `from` ends, and they are alike and not parts of others.
-  void merge(int from, int to, Requests& requests, int64_t time) {
-    const int64_t a = requests[root(from)];
-    const int64_t b = requests[root(to)];
-    const TensorSpec& spec = graph_.info(from).spec;
-    const auto whole = [&](int id) {
-      return graph_.info(id).spec.bytes() == graph_.info(graph_.info(id).root).spec.bytes();
-    };
-    if (a < 0 || b < 0 || a == b || !(spec == graph_.info(to).spec) || !whole(from) || !whole(to)) return;
-    Pending& earlier = pending_[static_cast<size_t>(a)];
-    Pending& later = pending_[static_cast<size_t>(b)];
-    if (earlier.use.last != time || later.use.first != time) return;
-    earlier.use.last = later.use.last;
-    earlier.slices.insert(earlier.slices.end(), later.slices.begin(), later.slices.end());
-    later.slices.clear();
-    requests[root(to)] = a;
-  }
-
-  void place_shared() {
-    std::erase_if(pending_, [](const Pending& p) { return p.slices.empty(); });
-    std::vector<MemoryRequest> requests;
-    for (const Pending& p : pending_) requests.push_back({p.use.bytes, p.use.first, p.use.last});
-    const Caps& caps = e_.device_->caps();
-    const MemoryPlan plan =
-        plan_memory(requests, std::min(kBlockBytes, caps.max_allocation_bytes), caps.offset_alignment);
-    if (plan.total_bytes() > caps.memory_bytes)
-      throw Error(
-          fmt::format("activations and gradients need {} MiB, {} has {}; use a smaller --batch or image size",
-                      plan.total_bytes() >> 20, caps.name, caps.memory_bytes >> 20));
-    for (uint64_t bytes : plan.block_bytes)
-      e_.blocks_.push_back(std::make_unique<Buffer>(*e_.device_, bytes, MemoryKind::kDevice, "activations"));
-    for (size_t i = 0; i < pending_.size(); ++i) {
-      const Placement& placement = plan.placements[i];
-      for (Slice* slice : pending_[i].slices)
-        *slice = {e_.blocks_[placement.block].get(), placement.offset, pending_[i].use.bytes};
-      e_.memory_uses_.push_back(std::move(pending_[i].use));
-    }
-    for (NodeMemory& memory : e_.node_memory_)
-      for (Operand& saved : memory.saved) saved.slice = stored(saved.slice, saved.spec);
-    e_.shared_bytes_ = plan.total_bytes();
-  }
-
-  Executor& e_;
-  const Graph& graph_;
-  bool in_place_;
-  std::vector<Life> data_life_;   ///< by root, as all of these
-  std::vector<Life> again_life_;  ///< of recomputed values, in backward
-  std::vector<Life> gradient_life_;
-  Requests data_;
-  Requests again_;
-  Requests gradient_;
-  std::vector<Pending> pending_;
-};
-
 Executor::Executor(const Device& device, Graph& graph, ExecutorOptions options)
     : device_(&device),
       graph_(&graph),
       loss_(options.loss),
       loss_scale_(options.loss_scale),
-      gradient_done_(std::move(options.gradient_done)),
-      groups_(std::move(options.groups)) {
+      gradient_done_(options.gradient_done),
+      portions_(options.portions),
+      groups_(options.groups),
+      plan_(plan_execution(device.caps(), graph, options)) {
   if (!groups_) groups_ = std::make_shared<GroupStore>(device);
-  kept_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "inputs and outputs", uint64_t{4} << 20);
-  if (loss_) backward_plan_ = plan_backward(graph, loss_, options.trained);
-  for (const Node& node : graph.nodes()) {
-    std::vector<TensorSpec> specs;
-    for (int id : node.inputs) specs.push_back(stored_as(graph.info(id).spec, Storage::kFloat32));
-    needs_.push_back(node.op->needs(specs, device.caps()));
-    forward_flop_ += needs_.back().forward_flop;
-  }
-  for (const auto& step : backward_plan_.steps)
-    backward_flop_ += vkopple::backward_flop(graph.nodes()[step.node], step, needs_[step.node].backward_flop);
-  recomputation_ = plan_recomputation(graph, backward_plan_, needs_, options.recompute_from);
-  Layouter(*this, options.in_place).run();
+  require_memory();
+  kept_ = std::make_unique<Arena>(device, MemoryKind::kDevice, "inputs and outputs", kKeptBlockBytes);
+  place_own();
+  place_shared();
+  for (const Needs& needs : plan_.needs) forward_flop_ += needs.forward_flop;
+  for (const auto& step : plan_.backward.steps)
+    backward_flop_ +=
+        vkopple::backward_flop(graph.nodes()[step.node], step, plan_.needs[step.node].backward_flop);
   forward_ = recorded_forward(options.profile, {});
   if (loss_) backward_ = recorded_backward(options.profile, {});
+  if (loss_ && portions_ > 1) {
+    Recorder recorder(device);
+    clear_gradients(recorder);
+    clear_ = recorder.finish();
+  }
   if (!graph.updates().empty()) record_update(options.profile);
+}
+
+void Executor::require_memory() const {
+  uint64_t bytes = plan_.own_bytes();
+  for (const auto& [name, group_bytes] : plan_.groups)
+    if (!groups_->has(name)) bytes += group_bytes;
+  const uint64_t free = free_memory(*device_);
+  if (bytes > free)
+    throw Error(fmt::format("{} of memory are needed, {} has {} free; use a smaller batch or image size",
+                            byte_text(bytes), device_->caps().name, byte_text(free)));
+}
+
+/// What is in groups or kept.
+void Executor::place_own() {
+  data_.resize(graph_->value_count());
+  gradients_.resize(graph_->value_count());
+  for (size_t id = 0; id < graph_->value_count(); ++id) {
+    const ValueInfo& info = graph_->info(static_cast<int>(id));
+    if (info.root != static_cast<int>(id) || !has_own_memory(info)) continue;
+    data_[id] =
+        in_group(info) ? groups_->get(info.name, info.spec.bytes()) : kept_->allocate(info.spec.bytes());
+  }
+  for (int id : plan_.backward.zero_first)
+    gradients_[static_cast<size_t>(id)] = data_[static_cast<size_t>(graph_->gradient_of(id))];
+}
+
+/// The rest, as the layout has it.
+void Executor::place_shared() {
+  const MemoryLayout& layout = plan_.layout;
+  for (uint64_t bytes : layout.plan.block_bytes)
+    blocks_.push_back(std::make_unique<Buffer>(*device_, bytes, MemoryKind::kDevice, "activations"));
+  const auto slice_of = [&](MemoryLayout::Stretch stretch) -> Slice {
+    if (stretch == MemoryLayout::kNone) return {};
+    const auto index = static_cast<size_t>(stretch);
+    const Placement& placement = layout.plan.placements[index];
+    return {blocks_[placement.block].get(), placement.offset, layout.stretches[index].bytes};
+  };
+  again_.resize(graph_->value_count());
+  for (size_t id = 0; id < graph_->value_count(); ++id) {
+    if (layout.data[id] != MemoryLayout::kNone) data_[id] = slice_of(layout.data[id]);
+    if (layout.gradients[id] != MemoryLayout::kNone) gradients_[id] = slice_of(layout.gradients[id]);
+    again_[id] = slice_of(layout.again[id]);
+  }
+  for (size_t n = 0; n < graph_->nodes().size(); ++n) {
+    const MemoryLayout::NodeStretches& stretches = layout.nodes[n];
+    NodeMemory& memory = node_memory_.emplace_back();
+    memory.forward_scratch = slice_of(stretches.forward_scratch);
+    memory.backward_scratch = slice_of(stretches.backward_scratch);
+    for (size_t i = 0; i < stretches.saved.size(); ++i) {
+      const TensorSpec& spec = plan_.needs[n].saved[i];
+      memory.saved.push_back({spec, stored(slice_of(stretches.saved[i]), spec)});
+    }
+  }
 }
 
 Executor::~Executor() = default;
@@ -301,7 +136,7 @@ std::vector<Operand> Executor::operands_in_backward(const std::vector<int>& valu
   std::vector<Operand> all = operands(values);
   for (size_t i = 0; i < values.size(); ++i) {
     const auto& info = graph_->info(values[i]);
-    if (recomputation_.again(info.root))
+    if (plan_.recomputation.again(info.root))
       all[i].slice =
           stored(again_[static_cast<size_t>(info.root)].sub(info.offset, info.spec.bytes()), info.spec);
   }
@@ -315,10 +150,10 @@ std::unique_ptr<Commands> Executor::recorded_forward(bool profile, const Watcher
     const auto x = operands(node.inputs);
     const auto y = operands(node.outputs);
     recorder.begin_section();
-    recorder.expect_work(needs_[n].forward_flop);
+    recorder.expect_work(plan_.needs[n].forward_flop);
     std::vector<Operand> saved = node_memory_[n].saved;
     if (saved.empty())  // inference, or no gradient comes this way
-      for (const TensorSpec& spec : needs_[n].saved) saved.push_back({spec, {}});
+      for (const TensorSpec& spec : plan_.needs[n].saved) saved.push_back({spec, {}});
     node.op->record_forward(recorder, {x, y, saved, node_memory_[n].forward_scratch});
     recorder.end_section();
     watch(recorder, watcher, node, n, y);
@@ -329,15 +164,11 @@ std::unique_ptr<Commands> Executor::recorded_forward(bool profile, const Watcher
 std::unique_ptr<Commands> Executor::recorded_backward(bool profile, const Watcher& watcher) {
   Recorder recorder(*device_, profile);
   backward_sections_.clear();
-  for (int root : backward_plan_.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
-  const Slice seed = gradient_operand(loss_.id()).slice;
-  if (loss_scale_)
-    recorder.copy(slice(loss_scale_).sub(0, seed.bytes), seed);
-  else
-    recorder.fill(seed, std::bit_cast<uint32_t>(1.0F));
-  for (size_t s = 0; s < backward_plan_.steps.size(); ++s) {
-    const BackwardStep& step = backward_plan_.steps[s];
-    for (size_t n : recomputation_.before[s]) record_again(recorder, n);
+  if (portions_ == 1) clear_gradients(recorder);
+  set_loss_gradient(recorder);
+  for (size_t s = 0; s < plan_.backward.steps.size(); ++s) {
+    const BackwardStep& step = plan_.backward.steps[s];
+    for (size_t n : plan_.recomputation.before[s]) record_again(recorder, n);
     const Node& node = graph_->nodes()[step.node];
     for (int root : step.zero_roots) recorder.fill(gradients_[static_cast<size_t>(root)]);
     const auto x = operands_in_backward(node.inputs);
@@ -351,7 +182,7 @@ std::unique_ptr<Commands> Executor::recorded_backward(bool profile, const Watche
     const NodeMemory& memory = node_memory_[step.node];
     backward_sections_.push_back({false, s});
     recorder.begin_section();
-    recorder.expect_work(needs_[step.node].backward_flop);
+    recorder.expect_work(plan_.needs[step.node].backward_flop);
     node.op->record_backward(recorder, {x, y, memory.saved, dy, dx, step.accumulate, memory.backward_scratch});
     recorder.end_section();
     watch(recorder, watcher, node, s, dx);
@@ -362,19 +193,33 @@ std::unique_ptr<Commands> Executor::recorded_backward(bool profile, const Watche
   return recorder.finish();
 }
 
+void Executor::clear_gradients(Recorder& recorder) const {
+  for (int root : plan_.backward.zero_first) recorder.fill(gradients_[static_cast<size_t>(root)]);
+}
+
+/// As large as a portion's share in the mean.
+void Executor::set_loss_gradient(Recorder& recorder) const {
+  const Operand seed = gradient_operand(loss_.id());
+  const float share = 1.0F / static_cast<float>(portions_);
+  if (loss_scale_)
+    add_scaled(recorder, {seed.spec, slice(loss_scale_).sub(0, seed.slice.bytes)}, seed, share, false);
+  else
+    recorder.fill(seed.slice, std::bit_cast<uint32_t>(share));
+}
+
 /// Groups of parameters that this step of backward is the last to add to.
 std::vector<std::string> Executor::gradients_done_after(size_t step) const {
   const auto groups_of = [&](size_t s) {
     std::set<std::string> groups;
-    const Node& node = graph_->nodes()[backward_plan_.steps[s].node];
+    const Node& node = graph_->nodes()[plan_.backward.steps[s].node];
     for (size_t i = 0; i < node.inputs.size(); ++i) {
       const ValueInfo& root = graph_->info(graph_->info(node.inputs[i]).root);
-      if (backward_plan_.steps[s].wants[i] != 0 && root.role == Role::kParameter) groups.insert(root.name);
+      if (plan_.backward.steps[s].wants[i] != 0 && root.role == Role::kParameter) groups.insert(root.name);
     }
     return groups;
   };
   std::set<std::string> done = groups_of(step);
-  for (size_t later = step + 1; later < backward_plan_.steps.size() && !done.empty(); ++later)
+  for (size_t later = step + 1; later < plan_.backward.steps.size() && !done.empty(); ++later)
     for (const std::string& group : groups_of(later)) done.erase(group);
   return {done.begin(), done.end()};
 }
@@ -402,8 +247,9 @@ void Executor::record_update(bool profile) {
 
 void Executor::forward() { forward_ran_ = forward_->run(); }
 
-void Executor::backward() {
+void Executor::backward(Portion portion) {
   if (!backward_) throw Error("this executor was made without a loss");
+  if (clear_ && portion == Portion::kFirst) clear_->run();
   backward_ran_ = backward_->run();
 }
 
@@ -458,7 +304,7 @@ std::vector<float> Executor::read_gradient(Value parameter) const {
 }
 
 uint64_t Executor::total_bytes() const {
-  return shared_bytes_ + kept_->allocated_bytes() + groups_->allocated_bytes();
+  return shared_bytes() + kept_->allocated_bytes() + groups_->allocated_bytes();
 }
 
 size_t Executor::dispatches() const {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "graph/autodiff.h"
+#include "graph/execution_plan.h"
+#include "graph/executor_options.h"
 #include "graph/graph.h"
 #include "graph/memory_use.h"
 #include "graph/profile.h"
-#include "graph/recompute.h"
 #include "runtime/buffer.h"
 #include "runtime/recorder.h"
 
@@ -27,6 +27,7 @@ class GroupStore {
   explicit GroupStore(const Device& device);
   /// Zeros at first. Throws Error where the group exists with another size.
   Slice get(const std::string& name, uint64_t bytes);
+  bool has(const std::string& name) const { return slices_.contains(name); }
   uint64_t allocated_bytes() const { return arena_.allocated_bytes(); }
 
  private:
@@ -35,18 +36,10 @@ class GroupStore {
   std::map<std::string, Slice> slices_;
 };
 
-struct ExecutorOptions {
-  std::shared_ptr<GroupStore> groups;           ///< null: groups of its own
-  Value loss;                                   ///< none: inference, forward alone
-  std::vector<std::string> trained;             ///< parameter groups that receive gradients
-  Value loss_scale;                             ///< row-major; its first element is the loss' gradient. None: 1
-  bool profile = false;                         ///< timestamps around every command
-  uint64_t recompute_from = uint64_t{1} << 18;  ///< bytes from which backward recomputes what is cheap to
-  /// Told in every backward, for each trained group that has a gradient, when that is complete and others may
-  /// be still to come: on the host, which may read it. Null: nobody is told.
-  std::function<void(const std::string& group)> gradient_done;
-  bool in_place = true;  ///< outputs take over the bytes of inputs where ops allow it
-};
+enum class Pass { kForward, kBackward, kUpdate };
+
+/// Whether a backward pass of several portions is the first of its update.
+enum class Portion { kFirst, kLater };
 
 /// Runs a graph on a device: places every tensor, records each pass once, replays it as often as asked.
 class Executor {
@@ -55,9 +48,11 @@ class Executor {
   Executor(const Device& device, Graph& graph, ExecutorOptions options = {});
   ~Executor();
 
-  void forward();   ///< all nodes
-  void backward();  ///< gradients of the trained groups, from the last forward
-  void update();    ///< the graph's update nodes
+  void forward();  ///< all nodes
+  /// Gradients of the trained groups, from the last forward. With several portions each pass gives its share of
+  /// the mean: the first in place of what the gradients were, the others added to it.
+  void backward(Portion portion = Portion::kFirst);
+  void update();  ///< the graph's update nodes
 
   /// Row-major values, converted to the value's layout. For inputs, group members and state. Throws Error on a
   /// wrong count.
@@ -82,11 +77,13 @@ class Executor {
   /// The passes that this executor has, each as it ran last (all of them must have run); without nodes unless
   /// profiling.
   std::vector<PassProfile> passes() const;
-  uint64_t shared_bytes() const { return shared_bytes_; }  ///< of activations and gradients
-  uint64_t total_bytes() const;                            ///< everything on the device, groups included
+  /// One of them, which must have run. Throws Error where this executor does not have it.
+  PassProfile pass(Pass which) const;
+  uint64_t shared_bytes() const { return plan_.shared_bytes(); }  ///< of activations and gradients
+  uint64_t total_bytes() const;                                   ///< everything on the device, groups included
   /// Where shared memory is fullest. Less than shared_bytes, as far as stretches could not be laid without
   /// gaps.
-  MemoryPeak memory_peak() const { return find_peak(memory_uses_); }
+  MemoryPeak memory_peak() const { return find_peak(plan_.layout.stretches); }
   double forward_flop() const { return forward_flop_; }
   double backward_flop() const { return backward_flop_; }
   size_t dispatches() const;
@@ -102,7 +99,9 @@ class Executor {
     bool again;
     size_t index;
   };
-  class Layouter;
+  void require_memory() const;
+  void place_own();
+  void place_shared();
   Operand operand(int value) const;
   Operand gradient_operand(int value) const;
   std::vector<Operand> operands(const std::vector<int>& values) const;
@@ -112,6 +111,8 @@ class Executor {
   std::unique_ptr<Commands> recorded_forward(bool profile, const Watcher& watcher);
   std::unique_ptr<Commands> recorded_backward(bool profile, const Watcher& watcher);
   void record_again(Recorder& recorder, size_t n);
+  void clear_gradients(Recorder& recorder) const;
+  void set_loss_gradient(Recorder& recorder) const;
   std::vector<std::string> gradients_done_after(size_t step) const;
   void record_update(bool profile);
   NodeProfile profile_of(const Node& node) const;
@@ -126,6 +127,7 @@ class Executor {
   Value loss_;
   Value loss_scale_;
   std::function<void(const std::string& group)> gradient_done_;
+  int portions_;
   std::shared_ptr<GroupStore> groups_;
   std::unique_ptr<Arena> kept_;
   std::vector<std::unique_ptr<Buffer>> blocks_;
@@ -133,18 +135,15 @@ class Executor {
   std::vector<Slice> again_;      ///< by root value: where backward computes it again
   std::vector<Slice> gradients_;  ///< by root value
   std::vector<NodeMemory> node_memory_;
-  std::vector<Needs> needs_;
-  BackwardPlan backward_plan_;
-  Recomputation recomputation_;
+  ExecutionPlan plan_;
   std::vector<BackwardSection> backward_sections_;
-  std::vector<MemoryUse> memory_uses_;
   std::unique_ptr<Commands> forward_;
+  std::unique_ptr<Commands> clear_;  ///< of gradients, where backward does not do so itself
   std::unique_ptr<Commands> backward_;
   std::unique_ptr<Commands> update_;
   RunTimes forward_ran_;
   RunTimes backward_ran_;
   RunTimes update_ran_;
-  uint64_t shared_bytes_ = 0;
   double forward_flop_ = 0;
   double backward_flop_ = 0;
 };

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include "graph/executor.h"
+#include "runtime/error.h"
 
 namespace vkopple {
 
@@ -11,7 +14,7 @@ NodeProfile Executor::profile_of(const Node& node) const {
 
 NodeProfile Executor::forward_profile(size_t n) const {
   NodeProfile profile = profile_of(graph_->nodes()[n]);
-  profile.flop = needs_[n].forward_flop;
+  profile.flop = plan_.needs[n].forward_flop;
   for (const auto* side : {&profile.inputs, &profile.outputs})
     for (const TensorSpec& spec : *side) profile.bytes += spec.bytes();
   for (const Operand& saved : node_memory_[n].saved) profile.bytes += saved.spec.bytes();
@@ -19,7 +22,7 @@ NodeProfile Executor::forward_profile(size_t n) const {
 }
 
 NodeProfile Executor::backward_profile(const BackwardStep& step) const {
-  const Needs& needs = needs_[step.node];
+  const Needs& needs = plan_.needs[step.node];
   NodeProfile profile = profile_of(graph_->nodes()[step.node]);
   profile.flop = needs.backward_flop;
   for (size_t i = 0; i < profile.inputs.size(); ++i) {
@@ -34,7 +37,7 @@ NodeProfile Executor::backward_profile(const BackwardStep& step) const {
 }
 
 NodeProfile Executor::section_profile(const BackwardSection& section) const {
-  if (!section.again) return backward_profile(backward_plan_.steps[section.index]);
+  if (!section.again) return backward_profile(plan_.backward.steps[section.index]);
   NodeProfile profile = forward_profile(section.index);
   profile.op += " again";
   return profile;
@@ -47,28 +50,39 @@ NodeProfile Executor::update_profile(const Node& node) const {
   return profile;
 }
 
-std::vector<PassProfile> Executor::passes() const {
-  const auto pass = [](const char* name, const Commands& commands, const RunTimes& host, auto describe) {
-    PassProfile profile{.name = name, .host = host, .nodes = {}};
+PassProfile Executor::pass(Pass which) const {
+  const auto profile = [](const char* name, const std::unique_ptr<Commands>& commands, const RunTimes& host,
+                          auto describe) {
+    if (!commands) throw Error(fmt::format("this executor has no {} pass", name));
+    PassProfile pass{.name = name, .host = host, .nodes = {}};
     int last = -2;  // no command's section
-    for (const CommandTime& time : commands.command_times()) {
+    for (const CommandTime& time : commands->command_times()) {
       if (time.section >= 0 && time.section != last)
-        profile.nodes.push_back(describe(static_cast<size_t>(time.section)));
+        pass.nodes.push_back(describe(static_cast<size_t>(time.section)));
       else if (time.section < 0)
-        profile.nodes.push_back({.op = time.name});
-      profile.nodes.back().commands.push_back(time);
+        pass.nodes.push_back({.op = time.name});
+      pass.nodes.back().commands.push_back(time);
       last = time.section;
     }
-    return profile;
+    return pass;
   };
-  std::vector<PassProfile> all;
-  all.push_back(pass("forward", *forward_, forward_ran_, [&](size_t n) { return forward_profile(n); }));
-  if (backward_)
-    all.push_back(pass("backward", *backward_, backward_ran_,
-                       [&](size_t s) { return section_profile(backward_sections_[s]); }));
-  if (update_)
-    all.push_back(
-        pass("update", *update_, update_ran_, [&](size_t n) { return update_profile(graph_->updates()[n]); }));
+  switch (which) {
+    case Pass::kForward:
+      return profile("forward", forward_, forward_ran_, [&](size_t n) { return forward_profile(n); });
+    case Pass::kBackward:
+      return profile("backward", backward_, backward_ran_,
+                     [&](size_t s) { return section_profile(backward_sections_[s]); });
+    case Pass::kUpdate:
+      break;
+  }
+  return profile("update", update_, update_ran_,
+                 [&](size_t n) { return update_profile(graph_->updates()[n]); });
+}
+
+std::vector<PassProfile> Executor::passes() const {
+  std::vector<PassProfile> all{pass(Pass::kForward)};
+  if (backward_) all.push_back(pass(Pass::kBackward));
+  if (update_) all.push_back(pass(Pass::kUpdate));
   return all;
 }
 

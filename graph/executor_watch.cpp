@@ -43,7 +43,9 @@ std::optional<std::string> Executor::find_not_finite() {
     };
   };
   recorded_forward(false, watcher("forward", graph_->nodes().size()))->run();
-  if (!found && loss_) recorded_backward(false, watcher("backward", backward_plan_.steps.size()))->run();
+  // Also where the place is found: peers may be without a find and wait in backward.
+  if (clear_) clear_->run();
+  if (loss_) recorded_backward(false, watcher("backward", plan_.backward.steps.size()))->run();
   return found;
 }
 

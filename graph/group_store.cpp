@@ -7,7 +7,7 @@
 namespace vkopple {
 
 GroupStore::GroupStore(const Device& device)
-    : device_(&device), arena_(device, MemoryKind::kDevice, "parameters and state", uint64_t{16} << 20) {}
+    : device_(&device), arena_(device, MemoryKind::kDevice, "parameters and state", kGroupBlockBytes) {}
 
 Slice GroupStore::get(const std::string& name, uint64_t bytes) {
   const auto [entry, added] = slices_.try_emplace(name);

@@ -93,6 +93,7 @@ std::vector<TrainingStage> Config::stages() const {
   all.networks = networks_of(model);
   all.learning_rate = training.learning_rate;
   all.batch = training.batch;
+  all.accumulate = training.accumulate;
   all.rooms = rooms;
   return {all};
 }

@@ -5,12 +5,26 @@
 
 namespace vkopple {
 
+namespace {
+
+PerceptionGraph build(Graph& graph, const Caps& caps, const ModelConfig& config,
+                      const PerceptionOptions& options) {
+  graph.store_activations(activation_storage(options.precision));
+  return perception_graph(graph, config, options.batch, options.objects, caps.max_tensor_bytes());
+}
+
+}  // namespace
+
+uint64_t perception_bytes(const Caps& caps, const ModelConfig& config, const PerceptionOptions& options) {
+  Graph graph;
+  build(graph, caps, config, options);
+  return plan_execution(caps, graph, {}).own_bytes();
+}
+
 Perception::Perception(const Device& device, const ModelConfig& config, std::shared_ptr<GroupStore> groups,
                        const PerceptionOptions& options)
     : config_(config), options_(options) {
-  graph_.store_activations(activation_storage(options.precision));
-  const PerceptionGraph made =
-      perception_graph(graph_, config, options.batch, options.objects, device.caps().max_tensor_bytes());
+  const PerceptionGraph made = build(graph_, device.caps(), config, options);
   tensors_ = made.tensors;
   images_ = made.images;
   depth_ = made.depth;

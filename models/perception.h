@@ -12,6 +12,7 @@
 namespace vkopple {
 
 class Device;
+struct Caps;
 
 /// What single images show: B of them at a time, with running averages and no dropout.
 struct Percepts {
@@ -29,6 +30,9 @@ struct PerceptionOptions {
   bool profile = false;  ///< timestamps around every command
   Precision precision = Precision::kFloat32;
 };
+
+/// Bytes of device memory that a Perception takes beside the groups. Needs no device.
+uint64_t perception_bytes(const Caps& caps, const ModelConfig& config, const PerceptionOptions& options);
 
 /// The trained networks on single images. Weights and averages are those of `groups`, as training or a
 /// checkpoint left them.

@@ -7,7 +7,6 @@
 namespace vkopple {
 namespace {
 
-constexpr int kLargestBatch = 4096;
 constexpr double kSmallestRate = 1e-12;
 constexpr std::size_t kMostStages = 100;
 
@@ -23,6 +22,7 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   s.networks = networks_of(defaults.model);
   s.learning_rate = defaults.training.learning_rate;
   s.batch = defaults.training.batch;
+  s.accumulate = defaults.training.accumulate;
   object.text("name", s.name);
   object.choices("networks", s.networks, kNetworkNames);
   if (s.learns(Network::kMotion) && !defaults.model.relaxed)
@@ -47,6 +47,7 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   object.integer("slots", slots, 1, kMostSlots);
   if (slots > 0) s.slots = slots;
   object.integer("batch", s.batch, 1, kLargestBatch);
+  object.integer("accumulate", s.accumulate, 1, kLargestBatch);
   s.rooms = read_rooms_config(object.object("rooms"), defaults.rooms);
   object.finish();
   const bool plain = std::all_of(s.name.begin(), s.name.end(), [](char c) {
@@ -58,7 +59,7 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   return s;
 }
 
-nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& rooms) {
+nlohmann::ordered_json write_stage(const TrainingStage& s, int accumulate, const RoomsConfig& rooms) {
   nlohmann::ordered_json networks = nlohmann::ordered_json::array();
   for (const Network network : s.networks) networks.push_back(kNetworkNames[static_cast<std::size_t>(network)]);
   nlohmann::ordered_json result{{"name", s.name},
@@ -72,6 +73,7 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, const RoomsConfig& ro
   if (s.reg) result["reg"] = *s.reg;
   if (s.slots) result["slots"] = *s.slots;
   result["batch"] = s.batch;
+  if (s.accumulate != accumulate) result["accumulate"] = s.accumulate;
   const nlohmann::ordered_json base = write_rooms_config(rooms);
   const nlohmann::ordered_json mine = write_rooms_config(s.rooms);
   auto overrides = nlohmann::ordered_json::object();
@@ -129,6 +131,7 @@ std::vector<Network> networks_of(const ModelConfig& model) {
 TrainingConfig read_training_config(JsonObject object, const ModelConfig& model, const RoomsConfig& rooms) {
   TrainingConfig c;
   object.integer("batch", c.batch, 1, kLargestBatch);
+  object.integer("accumulate", c.accumulate, 1, kLargestBatch);
   object.number("learning_rate", c.learning_rate, kSmallestRate, 1);
   object.numbers("betas", c.betas, 0, 0.999999);
   object.number("epsilon", c.epsilon, 1e-12, 1);
@@ -148,7 +151,7 @@ TrainingConfig read_training_config(JsonObject object, const ModelConfig& model,
 
 nlohmann::ordered_json write_training_config(const TrainingConfig& c, const RoomsConfig& rooms) {
   auto stages = nlohmann::ordered_json::array();
-  for (const TrainingStage& stage : c.stages) stages.push_back(write_stage(stage, rooms));
+  for (const TrainingStage& stage : c.stages) stages.push_back(write_stage(stage, c.accumulate, rooms));
   nlohmann::ordered_json result{{"batch", c.batch},
                                 {"learning_rate", c.learning_rate},
                                 {"betas", c.betas},
@@ -161,6 +164,7 @@ nlohmann::ordered_json write_training_config(const TrainingConfig& c, const Room
   // Left out where it is the default: checkpoints of float32 stay as they were before there was a choice.
   if (c.precision != Precision::kFloat32)
     result["precision"] = kPrecisionNames[static_cast<std::size_t>(c.precision)];
+  if (c.accumulate != 1) result["accumulate"] = c.accumulate;
   if (c.sync_batch_norm) result["sync_batch_norm"] = true;
   result["reverse_probability"] = c.reverse_probability;
   result["stages"] = stages;

@@ -15,6 +15,8 @@
 
 namespace vkopple {
 
+inline constexpr int kLargestBatch = 4096;
+
 enum class Network { kDepth, kObject, kImagination, kMotion };
 inline constexpr std::array<std::string_view, 4> kNetworkNames{"depth", "object", "imagination", "motion"};
 /// Those that a model has: motion is learned in the relaxed one alone.
@@ -38,6 +40,7 @@ struct TrainingStage {
   std::optional<double> reg;  ///< in place of ModelConfig::reg
   std::optional<int> slots;   ///< in place of ModelConfig::slots, whose weights do not depend on their number
   int batch = 20;
+  int accumulate = 1;  ///< portions of equal length in which the batch is worked off; see TrainingConfig
   RoomsConfig rooms;
 
   /// In the stage's step `step`, counted from 0.
@@ -60,6 +63,9 @@ struct TrainingConfig {
   };
 
   int batch = 20;
+  /// Portions of equal length in which a batch (of several processes each one's part) is worked off one after
+  /// the other, so that less of it is in memory at once; their gradients' mean makes one step.
+  int accumulate = 1;
   double learning_rate = 3e-4;
   std::array<double, 2> betas{0.9, 0.999};
   double epsilon = 1e-6;

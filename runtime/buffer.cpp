@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "runtime/arena_blocks.h"
+#include "runtime/byte_text.h"
 #include "runtime/device.h"
 #include "runtime/vulkan_error.h"
 
@@ -108,19 +110,16 @@ Arena::Arena(const Device& device, MemoryKind kind, std::string name, uint64_t b
       block_bytes_(std::min(block_bytes, device.caps().max_allocation_bytes)) {}
 
 Slice Arena::allocate(uint64_t bytes) {
-  const uint64_t align = device_->caps().offset_alignment;
-  const uint64_t rounded = (std::max<uint64_t>(bytes, 16) + align - 1) / align * align;
-  if (rounded > device_->caps().max_allocation_bytes)
-    throw Error(fmt::format("{} needs {} MiB in one piece, {} allows {}; use a smaller --batch or image size",
-                            name_, rounded >> 20, device_->caps().name,
-                            device_->caps().max_allocation_bytes >> 20));
-  if (blocks_.empty() || used_ + rounded > blocks_.back()->bytes()) {
-    blocks_.push_back(std::make_unique<Buffer>(*device_, std::max(block_bytes_, rounded), kind_, name_));
-    used_ = 0;
-  }
-  const Slice slice{blocks_.back().get(), used_, bytes};
-  used_ += rounded;
-  return slice;
+  const Caps& caps = device_->caps();
+  const ArenaBlocks::Place place =
+      ArenaBlocks::place(caps, block_bytes_, blocks_.empty() ? 0 : blocks_.back()->bytes(), used_, bytes);
+  if (place.new_block > caps.max_allocation_bytes)
+    throw Error(fmt::format("{} needs {} in one piece, {} allows {}; use a smaller --batch or image size",
+                            name_, byte_text(place.new_block), caps.name,
+                            byte_text(caps.max_allocation_bytes)));
+  if (place.new_block > 0) blocks_.push_back(std::make_unique<Buffer>(*device_, place.new_block, kind_, name_));
+  used_ = place.used;
+  return {blocks_.back().get(), place.offset, bytes};
 }
 
 uint64_t Arena::allocated_bytes() const {

@@ -108,12 +108,13 @@ StepMemory measure_memory(const Device& device, const Config& config, const Benc
 BenchmarkResult benchmark_step(const Device& device, const Config& config, const BenchmarkOptions& options) {
   TrainingStage stage = find_stage(config, options.stage);
   stage.batch = static_cast<int>(options.batch);
-  const Triplets triplets = made_up(config.model, options.batch);
+  const Triplets triplets = made_up(config.model, portion_batch(stage, nullptr));
   BenchmarkResult result;
   const auto memory_before = resident_memory();
   std::unique_ptr<TrainingStep> training;
   uint32_t step = 0;
-  const auto run = [&] { training->run(triplets, 1, step++); };
+  const auto portion = [&](int) { return triplets; };
+  const auto run = [&] { training->run(portion, 1, step++); };
   const auto build = [&](bool profile) {
     training = std::make_unique<TrainingStep>(device, config, stage, nullptr, profile);
     initialise(training->executor(), training->model().tensors());
@@ -125,7 +126,7 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
   time_steps(result, options, run);
   const Executor& executor = training->executor();
   result.gflop_per_triplet =
-      (executor.forward_flop() + executor.backward_flop()) * 1e-9 / static_cast<double>(options.batch);
+      (executor.forward_flop() + executor.backward_flop()) * 1e-9 / static_cast<double>(training->batch());
   if (!training->model().options().background_only)
     result.authors_gflop_per_triplet = authors_flop(config.model) * 1e-9;
   result.peak_device_bytes = executor.total_bytes();
@@ -135,7 +136,7 @@ BenchmarkResult benchmark_step(const Device& device, const Config& config, const
   training.reset();  // two models at once may not fit
   build(true);       // timestamps cost a little: they get runs of their own
   profile_step(result, options, device, [&](Trace& trace) {
-    training->run(triplets, 1, step++, &trace);
+    training->run(portion, 1, step++, &trace);
     result.passes = training->executor().passes();
   });
   return result;

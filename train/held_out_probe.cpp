@@ -4,9 +4,23 @@
 
 namespace vkopple {
 
+namespace {
+
+PerceptionOptions perception_options(const HeldOutProbe::Options& options) {
+  return {.batch = options.batch, .objects = options.objects};
+}
+
+}  // namespace
+
+uint64_t HeldOutProbe::device_bytes(const Caps& caps, const ModelConfig& config, const RoomsConfig& rooms,
+                                    const Options& options) {
+  return perception_bytes(caps, config, perception_options(options)) +
+         RoomSource::read_bytes(Lens(config), rooms, options.batch);
+}
+
 HeldOutProbe::HeldOutProbe(const ModelStore& store, const ModelConfig& config, const RoomsConfig& rooms,
                            const Options& options)
-    : perception_(store.device(), config, store.groups(), {.batch = options.batch, .objects = options.objects}),
+    : perception_(store.device(), config, store.groups(), perception_options(options)),
       rooms_(store.device(), Lens(config), rooms, options.batch, options.seed) {}
 
 HeldOutScores HeldOutProbe::measure(std::vector<std::vector<RgbImage>>* pictures) {

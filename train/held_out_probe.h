@@ -24,6 +24,10 @@ class HeldOutProbe {
     bool objects = true;  ///< false: depth alone, while no network learns objects
   };
 
+  /// Bytes of device memory that a probe takes beside the weights. Needs no device.
+  static uint64_t device_bytes(const Caps& caps, const ModelConfig& config, const RoomsConfig& rooms,
+                               const Options& options);
+
   HeldOutProbe(const ModelStore& store, const ModelConfig& config, const RoomsConfig& rooms,
                const Options& options);
 

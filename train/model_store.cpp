@@ -37,8 +37,9 @@ void ModelStore::write(const LayoutEntry& entry, std::span<const float> values) 
   upload_values<float>(*device_, slice(entry), values);
 }
 
-void ModelStore::count_step(bool background_only, int slots) {
-  for (auto& [name, count] : batch_counters_) count += layout_.calls_in_a_step(name, background_only, slots);
+void ModelStore::count_step(bool background_only, int slots, int portions) {
+  for (auto& [name, count] : batch_counters_)
+    count += portions * layout_.calls_in_a_step(name, background_only, slots);
 }
 
 }  // namespace vkopple

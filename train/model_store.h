@@ -38,8 +38,8 @@ class ModelStore {
   /// Calls of every batch norm so far, by the counter's name.
   std::map<std::string, int64_t>& batch_counters() { return batch_counters_; }
   const std::map<std::string, int64_t>& batch_counters() const { return batch_counters_; }
-  /// Counts a step of training.
-  void count_step(bool background_only, int slots);
+  /// Counts a step of training, each of whose portions calls batch norms.
+  void count_step(bool background_only, int slots, int portions = 1);
 
  private:
   Slice slice(const LayoutEntry& entry) const;

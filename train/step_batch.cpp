@@ -21,12 +21,16 @@ std::vector<bool> reversed_triplets(uint64_t seed, uint64_t step, int batch, dou
   return reversed;
 }
 
-std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch) {
+std::vector<uint32_t> scene_permutation(uint64_t seed, uint64_t step, int batch, BatchPart portion) {
   Random random(seed, kPermutationStreams + step);
   std::vector<uint32_t> order(static_cast<size_t>(batch));
   std::iota(order.begin(), order.end(), 0U);
   for (size_t i = order.size(); i > 1; --i)
     std::swap(order[i - 1], order[random.below(static_cast<uint32_t>(i))]);
+  const auto length = static_cast<uint32_t>(order.size() / portion.count);
+  const auto first = static_cast<uint32_t>(portion.index) * length;
+  std::erase_if(order, [&](uint32_t scene) { return scene < first || scene - first >= length; });
+  for (uint32_t& scene : order) scene -= first;
   return order;
 }
 
@@ -47,12 +51,14 @@ Triplets model_triplets(const TripletBatch& batch, std::vector<uint32_t> permuta
 }
 
 Triplets training_triplets(TripletSource& source, uint64_t seed, uint64_t step, int batch,
-                           double reverse_probability, int first_frame, BatchPart part) {
+                           double reverse_probability, int first_frame, BatchPart part, BatchPart portion) {
   const auto all = reversed_triplets(seed, step, batch, reverse_probability);
-  const auto length = static_cast<std::ptrdiff_t>(all.size() / part.count);
-  const auto begin = all.begin() + static_cast<std::ptrdiff_t>(part.index) * length;
+  const auto length = static_cast<std::ptrdiff_t>(all.size() / (portion.count * part.count));
+  const auto begin =
+      all.begin() + static_cast<std::ptrdiff_t>(portion.index * part.count + part.index) * length;
   const std::vector<bool> reversed(begin, begin + length);
-  return model_triplets(source.show(step, reversed, first_frame), scene_permutation(seed, step, batch));
+  return model_triplets(source.show(step * portion.count + portion.index, reversed, first_frame),
+                        scene_permutation(seed, step, batch, portion));
 }
 
 }  // namespace vkopple

@@ -10,9 +10,11 @@
 
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/memory_budget.h"
 #include "train/data/open_source.h"
 #include "train/held_out_probe.h"
 #include "train/parallel/agreement.h"
+#include "train/parallel/memory_share.h"
 #include "train/step_batch.h"
 #include "train/tensorboard/training_board.h"
 #include "train/training_step.h"
@@ -24,7 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 static_assert(Clock::is_steady);
 
-constexpr int kProbeBatch = 16;
 /// All weights and gradients are read for them.
 constexpr uint64_t kNormsEvery = 50;
 /// Measurements between two pictures, which take far more room than numbers.
@@ -43,11 +44,19 @@ std::string stage_text(const PlannedStage& planned) {
   const TrainingStage& s = planned.stage;
   std::vector<std::string_view> networks;
   for (const Network network : s.networks) networks.push_back(kNetworkNames[static_cast<size_t>(network)]);
-  return fmt::format("stage {}: steps {} to {}, batch {}, learning rate {}, training {}", s.name,
-                     planned.begin + 1, planned.end, s.batch, s.learning_rate, fmt::join(networks, ", "));
+  const std::string portions = s.accumulate > 1 ? fmt::format(" in {} portions", s.accumulate) : "";
+  return fmt::format("stage {}: steps {} to {}, batch {}{}, learning rate {}, training {}", s.name,
+                     planned.begin + 1, planned.end, s.batch, portions, s.learning_rate,
+                     fmt::join(networks, ", "));
 }
 
 }  // namespace
+
+TrainingSetting training_setting(const TrainerOptions& options) {
+  const bool leads = options.peers == nullptr || options.peers->rank() == 0;
+  return {
+      .drawn = names_rooms(options.data), .measured = options.eval_every > 0 && leads, .peers = options.peers};
+}
 
 /// What one stage needs at hand.
 struct Trainer::Stage {
@@ -75,10 +84,12 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
               }),
       saved_at_(Clock::now()) {
   if (resume) {
-    const bool latest = options_.checkpoint.empty() || options_.checkpoint == options_.folder.latest();
-    position_ = load_checkpoint(latest ? options_.folder.latest() : options_.checkpoint, store_, config_);
-    if (latest) saved_step_ = position_.step;
+    const std::filesystem::path checkpoint = resumed_checkpoint();
+    require_memory_from(read_checkpoint_header(checkpoint).position.step);
+    position_ = load_checkpoint(checkpoint, store_, config_);
+    if (checkpoint == options_.folder.latest()) saved_step_ = position_.step;
   } else {
+    require_memory_from(0);
     if (options_.weights.empty())
       store_.initialise(options_.seed);
     else
@@ -96,6 +107,20 @@ Trainer::Trainer(const Device& device, Config config, TrainerOptions options, bo
 
 Trainer::~Trainer() = default;
 
+std::filesystem::path Trainer::resumed_checkpoint() const {
+  return options_.checkpoint.empty() ? options_.folder.latest() : options_.checkpoint;
+}
+
+/// For the stages that go on beyond a step.
+void Trainer::require_memory_from(uint64_t step) const {
+  std::vector<PlannedStage> stages;
+  for (const PlannedStage& planned : plan_.stages())
+    if (planned.end > step) stages.push_back(planned);
+  const uint64_t free = options_.free_memory.value_or(free_memory(*device_));
+  require_memory(device_->caps(), config_, stages, training_setting(options_),
+                 memory_share(free, device_->caps(), options_.peers), step > 0);
+}
+
 Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
   const TrainingStage& s = planned.stage;
   const Lens lens(config_.model);
@@ -107,41 +132,47 @@ Trainer::Stage Trainer::open_stage(const PlannedStage& planned) {
                     {.reading = Reading::kTraining,
                      .seed = position_.seed,
                      .threads = options_.data_threads,
-                     .part = part()});
+                     .part = part(),
+                     .portions = static_cast<uint64_t>(s.accumulate)});
   if (options_.eval_every > 0 && leads())
     stage.probe = std::make_unique<HeldOutProbe>(
         store_, s.model_in(config_.model), s.rooms,
-        HeldOutProbe::Options{.batch = std::min(s.batch, kProbeBatch),
+        HeldOutProbe::Options{.batch = probe_batch(s),
                               // Whatever the data, it is measured in rooms.
                               .seed = rooms_seed(options_.data).value_or(0) + kProbeSeedDistance,
                               .objects = s.hypotheses != Hypotheses::kBackground});
   return stage;
 }
 
+Triplets Trainer::triplets_of(Stage& stage, uint64_t step, int portion) const {
+  const TrainingStage& s = stage.planned->stage;
+  return training_triplets(*stage.source, position_.seed, step, s.batch, config_.training.reverse_probability,
+                           stage.training->model().first_frame(), part(),
+                           {static_cast<uint64_t>(portion), static_cast<uint64_t>(s.accumulate)});
+}
+
 StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
   const auto start = Clock::now();
   const TrainingStage& s = stage.planned->stage;
   const uint64_t step = position_.step;
-  Triplets triplets;
-  {
-    const Trace::Span span(trace, "data");
-    triplets =
-        training_triplets(*stage.source, position_.seed, step, s.batch, config_.training.reverse_probability,
-                          stage.training->model().first_frame(), part());
-  }
-  StepRecord record{.stage = s.name,
-                    .batch = s.batch,
-                    .data_seconds = seconds_since(start),
-                    .learning_rate = s.learning_rate_at(step - stage.planned->begin)};
+  StepRecord record{
+      .stage = s.name, .batch = s.batch, .learning_rate = s.learning_rate_at(step - stage.planned->begin)};
   stage.training->set_learning_rate(record.learning_rate);
-  record.losses = stage.training->run(triplets, folded(position_.seed), folded(step), trace);
+  const auto shown = [&](int portion) {
+    const auto asked = Clock::now();
+    const Trace::Span span(trace, "data");
+    Triplets triplets = triplets_of(stage, step, portion);
+    record.data_seconds += seconds_since(asked);
+    return triplets;
+  };
+  record.losses = stage.training->run(shown, folded(position_.seed), folded(step), trace);
   record.skipped = stage.training->skipped();
   if (record.skipped) {
     ++position_.skipped;
     ++position_.skipped_in_a_row;
   } else {
     position_.skipped_in_a_row = 0;
-    store_.count_step(s.hypotheses == Hypotheses::kBackground, s.model_in(config_.model).slots);
+    store_.count_step(s.hypotheses == Hypotheses::kBackground, s.model_in(config_.model).slots, s.accumulate);
   }
   record.skipped_steps = position_.skipped;
   record.seconds = seconds_since(start);
@@ -156,10 +187,13 @@ StepRecord Trainer::train_step(Stage& stage, Trace* trace) {
 
 void Trainer::require_progress(Stage& stage) const {
   if (position_.skipped_in_a_row < options_.max_bad_steps) return;
+  const uint64_t step = position_.step - 1;
+  const std::string diagnosis = stage.training->diagnosis(
+      [&](int portion) { return triplets_of(stage, step, portion); }, folded(position_.seed), folded(step));
   throw Error(fmt::format(
       "step {}: {} steps in a row were skipped, as a loss or a gradient was not finite: {}; the checkpoints "
       "before stay, try a smaller learning rate",
-      position_.step, position_.skipped_in_a_row, stage.training->diagnosis()));
+      position_.step, position_.skipped_in_a_row, diagnosis));
 }
 
 void Trainer::measure(Stage& stage, Diary& diary, StepRecord& record) {

@@ -20,8 +20,11 @@
 #include "train/stage_plan.h"
 #include "train/training_listener.h"
 #include "train/training_log.h"
+#include "train/training_memory.h"
 
 namespace vkopple {
+
+struct Triplets;
 
 struct TrainerOptions {
   RunFolder folder;
@@ -40,7 +43,11 @@ struct TrainerOptions {
   uint64_t max_bad_steps = 10;          ///< that may be skipped in a row; at so many training stops
   FileSystem* files = &system_files();  ///< that checkpoints, log and events are written through
   Peers* peers = nullptr;               ///< processes that share the run; null: this one alone
+  std::optional<uint64_t> free_memory;  ///< bytes of the device that may be taken; none: what it tells
 };
+
+/// What decides, in a run with these options, how much memory it takes.
+TrainingSetting training_setting(const TrainerOptions& options);
 
 /// Trains a model by docs/model.md §7 and the stages of its configuration, on a folder of checkpoints and log.
 ///
@@ -52,7 +59,7 @@ struct TrainerOptions {
 class Trainer {
  public:
   /// A new run; with `resume` one that goes on from a checkpoint, which must be of this configuration. Throws
-  /// Error.
+  /// Error, also where the device has too little memory for what is to come, before it takes any.
   Trainer(const Device& device, Config config, TrainerOptions options, bool resume);
   ~Trainer();
   Trainer(const Trainer&) = delete;
@@ -70,8 +77,11 @@ class Trainer {
   struct Stage;
   struct Diary;
 
+  std::filesystem::path resumed_checkpoint() const;
+  void require_memory_from(uint64_t step) const;
   Stage open_stage(const PlannedStage& planned);
   StepRecord train_step(Stage& stage, Trace* trace);
+  Triplets triplets_of(Stage& stage, uint64_t step, int portion) const;
   void require_progress(Stage& stage) const;
   /// In held-out rooms, where it is time to.
   void measure(Stage& stage, Diary& diary, StepRecord& record);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "graph/ops/batch_norm.h"
@@ -85,6 +87,14 @@ TEST(ExecutorTest, SaysWhatIsWrong) {
   EXPECT_THROW(Executor(test_device(), graph, {.loss = graph.find("y"), .trained = {}}), Error);
 }
 
+TEST(ExecutorTest, MoreThanThereIsIsRefusedBeforeAnyIsTaken) {
+  Graph graph;
+  const Value x = graph.input("x", row_major({int64_t{1} << 48}));
+  graph.keep("y", leaky_relu(x, 0.9F));
+  test::expect_error([&] { const Executor executor(test_device(), graph); },
+                     {" GiB of memory are needed", " free", "smaller batch or image size"});
+}
+
 TEST(ExecutorTest, IntermediatesShareMemory) {
   Graph graph;
   Value x = graph.input("x", row_major({1 << 16}));
@@ -152,6 +162,49 @@ TEST(ExecutorTest, SavingMemoryChangesNoBit) {
     EXPECT_EQ(saving.gradient, plain.gradient) << recompute_from << ", " << in_place;
     EXPECT_LT(saving.shared_bytes, plain.shared_bytes) << recompute_from << ", " << in_place;
   }
+}
+
+/// The residual network's gradient from backward passes on made-up images with these seeds, `portions` of them
+/// for each update. Of the last update.
+std::vector<float> portioned_gradient(int portions, const std::vector<uint32_t>& seeds, bool scaled = false) {
+  Residual net;
+  const Value scale = scaled ? net.graph.state("scale", "scale", row_major({4})) : Value{};
+  Executor executor(test_device(), net.graph,
+                    {.loss = net.loss, .trained = {"p"}, .loss_scale = scale, .portions = portions});
+  const auto fill = [&](const Value& value, uint32_t seed) {
+    std::mt19937 random(seed);
+    std::vector<float> values(static_cast<size_t>(value.shape().elements()));
+    for (float& v : values) v = static_cast<float>(random() % 2001) / 1000 - 1;
+    executor.write(value, values);
+  };
+  fill(net.graph.group("p"), 5);
+  if (scaled) executor.write(scale, std::vector<float>{8, 0, 0, 0});
+  executor.write_words(net.graph.find("random"), std::vector<uint32_t>{3, 4});
+  for (size_t i = 0; i < seeds.size(); ++i) {
+    fill(net.x, seeds[i]);
+    fill(net.graph.find("target"), seeds[i] + 100);
+    executor.forward();
+    executor.backward(i % static_cast<size_t>(portions) == 0 ? Portion::kFirst : Portion::kLater);
+  }
+  return executor.read(net.graph.gradient("p"));
+}
+
+TEST(ExecutorTest, GradientsOfPortionsAreTheirMean) {
+  const auto one = portioned_gradient(1, {1}), two = portioned_gradient(1, {2}),
+             three = portioned_gradient(1, {3});
+  const auto all = portioned_gradient(3, {1, 2, 3}), scaled = portioned_gradient(3, {1, 2, 3}, true);
+  double largest = 0;
+  for (const float v : one) largest = std::max(largest, std::fabs(double{v}));
+  ASSERT_GT(largest, 1);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const double mean = (double{one[i]} + double{two[i]} + double{three[i]}) / 3;
+    EXPECT_NEAR(all[i], mean, 1e-6 * largest) << i;
+    EXPECT_NEAR(scaled[i], 8 * mean, 8e-6 * largest) << i;
+  }
+}
+
+TEST(ExecutorTest, GradientsOfTheNextPortionsTakeThePlaceOfTheLast) {
+  EXPECT_EQ(portioned_gradient(2, {3, 3, 1, 2}), portioned_gradient(2, {1, 2}));
 }
 
 }  // namespace

@@ -82,6 +82,23 @@ TEST(Config, SharedStatisticsAreWrittenWhereTheyAreWanted) {
             std::string::npos);
 }
 
+TEST(Config, PortionsAreWrittenWhereThereAreSeveral) {
+  Config c = Config::load("small");
+  EXPECT_EQ(c.to_json().find("accumulate"), std::string::npos);
+  c.training.stages[1].accumulate = 4;
+  EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
+  c.training.accumulate = 2;  // the first stage says that it has one
+  EXPECT_EQ(Config::parse(c.to_json(), "again"), c);
+  const Config inherited = Config::parse(R"({"training": {"accumulate": 2}})", "run.json");
+  EXPECT_EQ(inherited.stages().front().accumulate, 2);
+  EXPECT_EQ(Config::parse(R"({"training": {"accumulate": 2, "stages": [{"name": "a"}]}})", "run.json")
+                .stages()
+                .front()
+                .accumulate,
+            2);
+  EXPECT_NE(refusal(R"({"training": {"accumulate": 0}})").find("training.accumulate"), std::string::npos);
+}
+
 TEST(Config, SmallLearnsDepthFirst) {
   const Config c = Config::load("small");
   ASSERT_EQ(c.stages().size(), 2U);

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "tests/support/vulkan_objects.h"
+
 namespace vkopple::test {
 namespace {
 
@@ -45,53 +47,98 @@ VkResult VulkanFaults::result_of(const char* call) {
 
 }  // namespace vkopple::test
 
+using vkopple::test::note_gone;
+using vkopple::test::note_made;
 using vkopple::test::real;
+using vkopple::test::vulkan_object;
 using vkopple::test::VulkanFaults;
 
-// Each in place of the loader's function of that name.
-#define VKOPPLE_FAULTY(name, parameters, arguments)           \
-  extern "C" VKAPI_ATTR VkResult VKAPI_CALL name parameters { \
-    static const auto loader = real(&name, #name);            \
-    const VkResult fault = VulkanFaults::next(#name);         \
-    return fault == VK_SUCCESS ? loader arguments : fault;    \
+// Each in place of the loader's function of that name. `made` is done where it succeeds. Not all of them fail.
+#define VKOPPLE_STANDS_IN(name, fault_of, parameters, arguments, made) \
+  extern "C" VKAPI_ATTR VkResult VKAPI_CALL name parameters {          \
+    static const auto loader = real(&name, #name);                     \
+    const VkResult fault = fault_of(#name);                            \
+    if (fault != VK_SUCCESS) return fault;                             \
+    const VkResult result = loader arguments;                          \
+    if (result == VK_SUCCESS) {                                        \
+      made;                                                            \
+    }                                                                  \
+    return result;                                                     \
   }
 
-VKOPPLE_FAULTY(vkCreateBuffer,
-               (VkDevice device, const VkBufferCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkBuffer* buffer),
-               (device, info, callbacks, buffer))
-VKOPPLE_FAULTY(vkAllocateMemory,
-               (VkDevice device, const VkMemoryAllocateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkDeviceMemory* memory),
-               (device, info, callbacks, memory))
-VKOPPLE_FAULTY(vkBindBufferMemory,
-               (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
-               (device, buffer, memory, offset))
-VKOPPLE_FAULTY(vkMapMemory,
-               (VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
-                VkMemoryMapFlags flags, void** data),
-               (device, memory, offset, size, flags, data))
-VKOPPLE_FAULTY(vkCreateBufferView,
-               (VkDevice device, const VkBufferViewCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkBufferView* view),
-               (device, info, callbacks, view))
-VKOPPLE_FAULTY(vkCreateDescriptorPool,
-               (VkDevice device, const VkDescriptorPoolCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkDescriptorPool* pool),
-               (device, info, callbacks, pool))
-VKOPPLE_FAULTY(vkCreateCommandPool,
-               (VkDevice device, const VkCommandPoolCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkCommandPool* pool),
-               (device, info, callbacks, pool))
-VKOPPLE_FAULTY(vkAllocateCommandBuffers,
-               (VkDevice device, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* buffers),
-               (device, info, buffers))
-VKOPPLE_FAULTY(vkCreateFence,
-               (VkDevice device, const VkFenceCreateInfo* info, const VkAllocationCallbacks* callbacks,
-                VkFence* fence),
-               (device, info, callbacks, fence))
-VKOPPLE_FAULTY(vkQueueSubmit, (VkQueue queue, uint32_t count, const VkSubmitInfo* infos, VkFence fence),
-               (queue, count, infos, fence))
+#define VKOPPLE_FAULTY VulkanFaults::next
+#define VKOPPLE_SOUND [](const char*) { return VK_SUCCESS; }
+
+#define VKOPPLE_CREATES(name, fault_of, Info, Handle, kind, bytes)                                            \
+  VKOPPLE_STANDS_IN(name, fault_of,                                                                           \
+                    (VkDevice device, const Info* info, const VkAllocationCallbacks* callbacks, Handle* one), \
+                    (device, info, callbacks, one), note_made(vulkan_object(kind, *one), {}, bytes))
+
+#define VKOPPLE_DESTROYS(name, Handle, kind)                                           \
+  extern "C" VKAPI_ATTR void VKAPI_CALL name(VkDevice device, Handle one,              \
+                                             const VkAllocationCallbacks* callbacks) { \
+    static const auto loader = real(&name, #name);                                     \
+    note_gone(vulkan_object(kind, one));                                               \
+    loader(device, one, callbacks);                                                    \
+  }
+
+VKOPPLE_CREATES(vkAllocateMemory, VKOPPLE_FAULTY, VkMemoryAllocateInfo, VkDeviceMemory, "allocations",
+                info->allocationSize)
+VKOPPLE_DESTROYS(vkFreeMemory, VkDeviceMemory, "allocations")
+VKOPPLE_CREATES(vkCreateBuffer, VKOPPLE_FAULTY, VkBufferCreateInfo, VkBuffer, "buffers", 0)
+VKOPPLE_DESTROYS(vkDestroyBuffer, VkBuffer, "buffers")
+VKOPPLE_CREATES(vkCreateBufferView, VKOPPLE_FAULTY, VkBufferViewCreateInfo, VkBufferView, "buffer views", 0)
+VKOPPLE_DESTROYS(vkDestroyBufferView, VkBufferView, "buffer views")
+VKOPPLE_CREATES(vkCreateDescriptorPool, VKOPPLE_FAULTY, VkDescriptorPoolCreateInfo, VkDescriptorPool,
+                "descriptor pools", 0)
+VKOPPLE_DESTROYS(vkDestroyDescriptorPool, VkDescriptorPool, "descriptor pools")
+VKOPPLE_CREATES(vkCreateDescriptorSetLayout, VKOPPLE_SOUND, VkDescriptorSetLayoutCreateInfo,
+                VkDescriptorSetLayout, "descriptor set layouts", 0)
+VKOPPLE_DESTROYS(vkDestroyDescriptorSetLayout, VkDescriptorSetLayout, "descriptor set layouts")
+VKOPPLE_CREATES(vkCreateCommandPool, VKOPPLE_FAULTY, VkCommandPoolCreateInfo, VkCommandPool, "command pools", 0)
+VKOPPLE_DESTROYS(vkDestroyCommandPool, VkCommandPool, "command pools")
+VKOPPLE_CREATES(vkCreateFence, VKOPPLE_FAULTY, VkFenceCreateInfo, VkFence, "fences", 0)
+VKOPPLE_DESTROYS(vkDestroyFence, VkFence, "fences")
+VKOPPLE_CREATES(vkCreateQueryPool, VKOPPLE_SOUND, VkQueryPoolCreateInfo, VkQueryPool, "query pools", 0)
+VKOPPLE_DESTROYS(vkDestroyQueryPool, VkQueryPool, "query pools")
+VKOPPLE_CREATES(vkCreateShaderModule, VKOPPLE_SOUND, VkShaderModuleCreateInfo, VkShaderModule, "shader modules",
+                0)
+VKOPPLE_DESTROYS(vkDestroyShaderModule, VkShaderModule, "shader modules")
+VKOPPLE_CREATES(vkCreatePipelineLayout, VKOPPLE_SOUND, VkPipelineLayoutCreateInfo, VkPipelineLayout,
+                "pipeline layouts", 0)
+VKOPPLE_DESTROYS(vkDestroyPipelineLayout, VkPipelineLayout, "pipeline layouts")
+VKOPPLE_STANDS_IN(vkCreateComputePipelines, VKOPPLE_SOUND,
+                  (VkDevice device, VkPipelineCache cache, uint32_t count,
+                   const VkComputePipelineCreateInfo* infos, const VkAllocationCallbacks* callbacks,
+                   VkPipeline* pipelines),
+                  (device, cache, count, infos, callbacks, pipelines),
+                  for (uint32_t i = 0; i < count; ++i) note_made(vulkan_object("pipelines", pipelines[i])))
+VKOPPLE_DESTROYS(vkDestroyPipeline, VkPipeline, "pipelines")
+
+// What a pool hands out ends with it: nothing is freed one by one.
+VKOPPLE_STANDS_IN(vkAllocateCommandBuffers, VKOPPLE_FAULTY,
+                  (VkDevice device, const VkCommandBufferAllocateInfo* info, VkCommandBuffer* buffers),
+                  (device, info, buffers),
+                  for (uint32_t i = 0; i < info->commandBufferCount; ++i)
+                      note_made(vulkan_object("command buffers", buffers[i]),
+                                vulkan_object("command pools", info->commandPool)))
+VKOPPLE_STANDS_IN(vkAllocateDescriptorSets, VKOPPLE_SOUND,
+                  (VkDevice device, const VkDescriptorSetAllocateInfo* info, VkDescriptorSet* sets),
+                  (device, info, sets),
+                  for (uint32_t i = 0; i < info->descriptorSetCount; ++i)
+                      note_made(vulkan_object("descriptor sets", sets[i]),
+                                vulkan_object("descriptor pools", info->descriptorPool)))
+
+VKOPPLE_STANDS_IN(vkBindBufferMemory, VKOPPLE_FAULTY,
+                  (VkDevice device, VkBuffer buffer, VkDeviceMemory memory, VkDeviceSize offset),
+                  (device, buffer, memory, offset), )
+VKOPPLE_STANDS_IN(vkMapMemory, VKOPPLE_FAULTY,
+                  (VkDevice device, VkDeviceMemory memory, VkDeviceSize offset, VkDeviceSize size,
+                   VkMemoryMapFlags flags, void** data),
+                  (device, memory, offset, size, flags, data), )
+VKOPPLE_STANDS_IN(vkQueueSubmit, VKOPPLE_FAULTY,
+                  (VkQueue queue, uint32_t count, const VkSubmitInfo* infos, VkFence fence),
+                  (queue, count, infos, fence), )
 
 /// The work that is waited for ends before the fault is told: its memory is freed next, and the device is not
 /// really lost.

@@ -71,6 +71,38 @@ TEST_F(TrainCommand, TrainsAndGoesOn) {
   EXPECT_NE(third.errors.find("has its 2 steps already"), std::string::npos) << third.errors;
 }
 
+TEST_F(TrainCommand, WorksOffABatchInPortions) {
+  const std::vector<std::string> start{config(),       "--data", "rooms:1", "--out", out(),
+                                       "--eval-every", "0",      "--steps", "1"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), start.begin(), start.end());
+    return train(more);
+  };
+  expect_failure(with({"--batch", "4", "--accumulate", "3"}), 1,
+                 {"4 triplets", "3 equal portions", "divides 4"});
+  expect_failure(with({"--batch", "auto", "--accumulate", "2"}), 2, {"--batch auto", "--accumulate"});
+  expect_failure(with({"--batch", "some"}), 2, {"--batch", "some"});
+  expect_failure(with({"--batch", "0"}), 2, {"--batch", "0"});
+  const auto first = with({"--batch", "4", "--accumulate", "2"});
+  expect_success(first);
+  EXPECT_NE(first.errors.find("stage all: steps 1 to 1, batch 4 in 2 portions"), std::string::npos)
+      << first.errors;
+  expect_failure(train({"--out", out(), "--resume", "--steps", "2", "--accumulate", "4"}), 1,
+                 {"training.accumulate is 2 there and 4 here"});
+  const auto second =
+      train({"--out", out(), "--resume", "--steps", "2", "--eval-every", "0", "--batch", "auto"});
+  expect_success(second);
+  EXPECT_NE(second.errors.find("batch 4 in 2 portions"), std::string::npos) << second.errors;
+}
+
+TEST_F(TrainCommand, FindsPortionsByItself) {
+  const auto outcome = train(
+      {config(), "--data", "rooms:1", "--out", out(), "--eval-every", "0", "--steps", "1", "--batch", "auto"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.errors.find("stage all: batch 20 with --accumulate 1 needs "), std::string::npos)
+      << outcome.errors;
+}
+
 TEST_F(TrainCommand, GoesOnFromTheOneBeforeWhereTheLatestIsDamaged) {
   const std::vector<std::string> start{config(),  "--data",
                                        "rooms:1", "--out",

@@ -50,6 +50,17 @@ TEST(StepBatch, PermutationsAreEveryOneAndAllDiffer) {
   EXPECT_EQ(scene_permutation(3, 4, 1), std::vector<uint32_t>{0});
 }
 
+TEST(StepBatch, APortionsScenesFollowEachOtherAsInTheWhole) {
+  const auto whole = scene_permutation(3, 4, 6);
+  EXPECT_EQ(scene_permutation(3, 4, 6, {0, 1}), whole);
+  for (uint32_t portion = 0; portion < 3; ++portion) {
+    std::vector<uint32_t> wanted;
+    for (const uint32_t scene : whole)
+      if (scene / 2 == portion) wanted.push_back(scene % 2);
+    EXPECT_EQ(scene_permutation(3, 4, 6, {portion, 3}), wanted) << portion;
+  }
+}
+
 TEST(StepBatch, FramesFollowOneAnother) {
   NumberedTriplets source(2);
   const Triplets t = training_triplets(source, 1, 3, 2, 0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,10 +26,14 @@ class TrainingStepTest : public testing::Test {
     stage_.batch = 2;
   }
 
-  Losses run(TrainingStep& training) {
-    RoomSource rooms(test_device(), Lens(config_.model), stage_.rooms, stage_.batch, 1);
-    return training.run(training_triplets(rooms, 1, 0, stage_.batch, 0.5, training.model().first_frame(), {}),
-                        1, 0);
+  Losses run(TrainingStep& training) { return training.run(shown(training), 1, 0); }
+  TripletsOfPortion shown(TrainingStep& training) {
+    const auto rooms = std::make_shared<RoomSource>(test_device(), Lens(config_.model), stage_.rooms,
+                                                    static_cast<int>(training.batch()), 1);
+    return [this, &training, rooms](int portion) {
+      return training_triplets(*rooms, 1, 0, stage_.batch, 0.5, training.model().first_frame(), {},
+                               {static_cast<uint64_t>(portion), static_cast<uint64_t>(stage_.accumulate)});
+    };
   }
   TrainingStep make() { return TrainingStep(test_device(), config_, stage_, store_.groups()); }
 
@@ -114,7 +119,7 @@ TEST_F(TrainingStepTest, WhatIsNotFiniteIsSkippedAndChangesNothing) {
   run(training);
   EXPECT_TRUE(training.skipped());
   EXPECT_EQ(everything(), before);
-  const std::string why = training.diagnosis();
+  const std::string why = training.diagnosis(shown(training), 1, 0);
   EXPECT_NE(why.find("not finite was "), std::string::npos) << why;
   EXPECT_NE(why.find("object"), std::string::npos) << why;
   EXPECT_NE(why.find(" in forward"), std::string::npos) << why;

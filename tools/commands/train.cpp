@@ -10,6 +10,7 @@
 #include "models/presets.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/memory_budget.h"
 #include "runtime/wide_vectors.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
@@ -19,14 +20,18 @@
 #include "train/checkpoint.h"
 #include "train/interrupt.h"
 #include "train/parallel/join.h"
+#include "train/parallel/memory_share.h"
 #include "train/parallel/own_device.h"
 #include "train/resume_point.h"
 #include "train/run_folder.h"
 #include "train/trainer.h"
+#include "train/training_memory.h"
 #include "train/tuning_file.h"
 
 namespace vkopple {
 namespace {
+
+constexpr const char* kFitBatch = "auto";
 
 struct Options {
   std::string config;
@@ -39,6 +44,8 @@ struct Options {
   std::optional<uint64_t> steps;
   std::optional<uint64_t> seed;
   std::optional<int> batch;
+  bool fit_batch = false;  ///< --batch auto
+  std::optional<int> accumulate;
   std::optional<Precision> precision;
   uint64_t checkpoint_every = TrainerOptions{RunFolder("")}.checkpoint_every;
   uint64_t keep = TrainerOptions{RunFolder("")}.keep;
@@ -57,9 +64,14 @@ struct Options {
 void set_choices(Config& config, const Options& o) {
   if (o.precision) config.training.precision = *o.precision;
   if (o.sync_batch_norm) config.training.sync_batch_norm = true;
-  if (!o.batch) return;
-  config.training.batch = *o.batch;
-  for (TrainingStage& stage : config.training.stages) stage.batch = *o.batch;
+  if (o.batch) {
+    config.training.batch = *o.batch;
+    for (TrainingStage& stage : config.training.stages) stage.batch = *o.batch;
+  }
+  if (o.accumulate) {
+    config.training.accumulate = *o.accumulate;
+    for (TrainingStage& stage : config.training.stages) stage.accumulate = *o.accumulate;
+  }
 }
 
 /// What the command line and, where a run is resumed, its checkpoint ask for.
@@ -72,6 +84,8 @@ Request new_run(const Options& o, TrainerOptions trainer) {
   if (trainer.folder.holds_checkpoint())
     throw UsageError(
         fmt::format("{}: holds a run already; go on with it by --resume, or name another --out", o.out));
+  if (o.fit_batch && o.accumulate)
+    throw UsageError("--batch auto: finds --accumulate by itself; leave out one of the two");
   if (o.config.empty()) throw UsageError("train: name a configuration file or a preset");
   if (o.data.empty()) throw UsageError("train: say what to train on: --data rooms:SEED, or a folder of shards");
   trainer.data = o.data;
@@ -101,9 +115,12 @@ Request resumed_run(const Options& o, TrainerOptions trainer) {
   return request;
 }
 
-/// Trains and tells what became of the run.
-void run_to_end(const Options& o, const Interrupt& interrupt, Trainer& trainer, bool leads) {
+/// Trains and tells what became of the run, after `notes`.
+void run_to_end(const Options& o, const Interrupt& interrupt, Trainer& trainer, bool leads,
+                const std::vector<std::string>& notes) {
   TrainOutput output(o.output, trainer.plan().steps());
+  if (leads)
+    for (const std::string& note : notes) output.say(note);
   const std::string latest = RunFolder(o.out).latest().string();
   const uint64_t begin = trainer.position().step;
   const auto end = [&](const char* outcome, const std::string& error = {}) {
@@ -160,8 +177,13 @@ void train(const Options& o, const Interrupt& interrupt, JoinedPeers* peers) {
                        .winograd = o.winograd,
                        .kernels = o.kernels,
                        .tuned = load_tuned_choices});
+  std::vector<std::string> notes;
+  // A run that is resumed keeps the portions that were found at its beginning.
+  if (o.fit_batch && !o.resume)
+    notes = fit_memory(device.caps(), request.config, training_setting(request.trainer),
+                       memory_share(free_memory(device), device.caps(), peers));
   Trainer trainer(device, std::move(request.config), std::move(request.trainer), o.resume);
-  run_to_end(o, interrupt, trainer, peers == nullptr || peers->rank() == 0);
+  run_to_end(o, interrupt, trainer, peers == nullptr || peers->rank() == 0, notes);
 }
 
 /// Where one of several processes fails, the others would wait for it for ever.
@@ -197,7 +219,26 @@ void add_train(CLI::App& app) {
                    "Steps of the whole run over all stages; the last stage ends there (default: what the "
                    "configuration says, and 15,125,000 triplets for a stage without end)")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--batch", o->batch, "Triplets of a step, in every stage")->check(CLI::Range(1, 4096));
+  const CLI::Range batches(1, kLargestBatch);
+  command
+      ->add_option_function<std::string>(
+          "--batch",
+          [o](const std::string& text) {
+            o->fit_batch = text == kFitBatch;
+            if (!o->fit_batch) o->batch = std::stoi(text, nullptr, 0);  // as the check reads it
+          },
+          "Triplets of a step, in every stage; auto: as many as the configuration says, in the fewest equal "
+          "portions (--accumulate) with which each stage takes at most nine tenths of the device's free "
+          "memory, and half a GiB less on a CPU")
+      ->type_name("auto|N")
+      ->check(CLI::Validator(
+          [batches](std::string& text) { return text == kFitBatch ? std::string() : batches(text); }, ""));
+  command
+      ->add_option("--accumulate", o->accumulate,
+                   "Work off a step's batch in so many equal portions, one after the other, whose gradients' "
+                   "mean makes the step: less memory, batch norms of smaller batches (default: what the "
+                   "configuration says, 1 where it says nothing)")
+      ->check(batches);
   command->add_option("--seed", o->seed, "Of weights, order and dropout (default: 0)")
       ->check(CLI::NonNegativeNumber);
   command
@@ -258,6 +299,8 @@ void add_train(CLI::App& app) {
   command->footer(
       "Examples: vkopple train small --data rooms:1 --out run --steps 2500\n"
       "          vkopple train --out run --steps 10000 --resume\n"
+      "          vkopple train full --data rooms:1 --out run --batch auto\n"
+      "          vkopple train full --data rooms:1 --out run --batch 20 --accumulate 4\n"
       "          vkopple train small --set training.stages=[] --weights run --data rooms:2 --out other\n"
       "          vkopple train small --data rooms:1 --out run --quiet --json | jq .losses.total\n"
       "          mpirun -n 4 vkopple train full --data rooms:1 --out run");

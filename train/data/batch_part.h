@@ -8,7 +8,8 @@
 
 namespace vkopple {
 
-/// What one of several processes sees of every batch: one of `count` runs of equal length.
+/// One of `count` runs of equal length of every batch: what one of several processes sees of it, or the portion
+/// that is worked off at once.
 struct BatchPart {
   uint64_t index = 0;
   uint64_t count = 1;

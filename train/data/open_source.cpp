@@ -23,8 +23,10 @@ std::unique_ptr<TripletSource> part_of(std::unique_ptr<TripletSource> source, Ba
 
 }  // namespace
 
+bool names_rooms(const std::string& data) { return data.starts_with(kRooms); }
+
 std::optional<uint64_t> rooms_seed(const std::string& data) {
-  if (!data.starts_with(kRooms)) return std::nullopt;
+  if (!names_rooms(data)) return std::nullopt;
   const std::string_view text = std::string_view(data).substr(kRooms.size());
   uint64_t seed = 0;
   const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seed);
@@ -38,9 +40,10 @@ std::unique_ptr<TripletSource> open_triplets(const Device& device, const std::st
   if (const auto rooms_of = rooms_seed(data))
     return part_of(std::make_unique<RoomSource>(device, lens, rooms, batch, *rooms_of), options.part);
   const LoadLimits limits{.scenes = options.reading == Reading::kEvaluation ? options.scenes : UINT64_MAX};
-  auto source = part_of(std::make_unique<ShardSource>(load_scenes(data, lens, limits), data, lens, batch,
-                                                      options.seed, options.reading, options.part.count),
-                        options.part);
+  auto source =
+      part_of(std::make_unique<ShardSource>(load_scenes(data, lens, limits), data, lens, batch, options.seed,
+                                            options.reading, options.part.count * options.portions),
+              options.part);
   if (options.reading == Reading::kTraining)
     return std::make_unique<ReadAhead>(std::move(source), options.threads);
   return source;

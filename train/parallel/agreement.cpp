@@ -34,11 +34,22 @@ void require_same(Peers* peers, std::string_view text, std::string_view what) {
                       peers->rank(), i / own.size(), what));
 }
 
-bool any(Peers* peers, bool here) {
-  if (!several(peers)) return here;
-  const float own = here ? 1 : 0;
-  const std::vector<float> all = peers->gather({&own, 1});
-  return std::any_of(all.begin(), all.end(), [](float v) { return v != 0; });
+int count_same(Peers* peers, std::string_view text) {
+  if (!several(peers)) return 1;
+  const auto own = fingerprint(text);
+  const std::vector<float> all = peers->gather(own);
+  int same = 0;
+  for (size_t at = 0; at < all.size(); at += own.size())
+    if (std::equal(own.begin(), own.end(), all.begin() + static_cast<std::ptrdiff_t>(at))) ++same;
+  return same;
 }
+
+float largest(Peers* peers, float here) {
+  if (!several(peers)) return here;
+  const std::vector<float> all = peers->gather({&here, 1});
+  return *std::max_element(all.begin(), all.end());
+}
+
+bool any(Peers* peers, bool here) { return largest(peers, here ? 1.0F : 0.0F) != 0; }
 
 }  // namespace vkopple

@@ -12,6 +12,12 @@ namespace vkopple {
 /// Throws Error where `text` is not the same in all processes; `what` says what it is.
 void require_same(Peers* peers, std::string_view text, std::string_view what);
 
+/// How many of the processes have the same `text`, this one included.
+int count_same(Peers* peers, std::string_view text);
+
+/// The largest of the processes' numbers.
+float largest(Peers* peers, float here);
+
 /// Whether it is so in any process.
 bool any(Peers* peers, bool here);
 

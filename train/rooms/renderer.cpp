@@ -82,6 +82,12 @@ RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsCo
   commands_ = recorder.finish();
 }
 
+uint64_t RoomRenderer::device_bytes(const Lens& lens, const RoomsConfig& rooms, int views, Truth truth) {
+  // Red, green and blue, and where truth is drawn depth and label.
+  const uint64_t words = lens.pixels() * static_cast<uint64_t>(views) * (truth == Truth::kDrawn ? 5 : 3);
+  return scene_bytes(static_cast<std::size_t>(rooms.objects), views) + words * sizeof(float);
+}
+
 void RoomRenderer::render(const std::vector<View>& views) {
   if (views.size() != static_cast<std::size_t>(views_)) {
     throw Error(fmt::format("rooms: {} views to draw where {} were announced", views.size(), views_));

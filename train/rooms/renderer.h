@@ -45,6 +45,9 @@ class RoomRenderer {
   RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views,
                Truth truth = Truth::kDrawn);
 
+  /// Bytes of device memory that such a renderer takes.
+  static uint64_t device_bytes(const Lens& lens, const RoomsConfig& rooms, int views, Truth truth);
+
   /// Draws `views`, as many as this was made for, and waits.
   void render(const std::vector<View>& views);
 

@@ -42,6 +42,15 @@ RoomSource::RoomSource(const Device& device, const Lens& lens, const RoomsConfig
       seed_(seed),
       choices_(strided_triplets(rooms.frames)) {}
 
+uint64_t RoomSource::read_bytes(const Lens& lens, const RoomsConfig& rooms, int batch) {
+  return RoomRenderer::device_bytes(lens, rooms, kFrames * batch, RoomRenderer::Truth::kDrawn);
+}
+
+uint64_t RoomSource::show_bytes(const Lens& lens, const RoomsConfig& rooms, int batch, int first_frame) {
+  return RoomRenderer::device_bytes(lens, rooms, (kFrames - first_frame) * batch,
+                                    RoomRenderer::Truth::kLeftOut);
+}
+
 std::vector<RoomTriplet> RoomSource::scenes(uint64_t step) const {
   std::vector<RoomTriplet> shown;
   for (uint64_t b = 0; b < static_cast<uint64_t>(batch_); ++b) {

@@ -22,6 +22,10 @@ class RoomSource : public TripletSource {
  public:
   RoomSource(const Device& device, const Lens& lens, const RoomsConfig& rooms, int batch, uint64_t seed);
 
+  /// Bytes of device memory that batches take which are read, or shown.
+  static uint64_t read_bytes(const Lens& lens, const RoomsConfig& rooms, int batch);
+  static uint64_t show_bytes(const Lens& lens, const RoomsConfig& rooms, int batch, int first_frame);
+
   /// Everything, on the host.
   TripletBatch read(uint64_t step) override;
   /// No truth, no frames before `first_frame`; the images stay on the device.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
 #include "train/data/open_source.h"
@@ -24,25 +27,29 @@ RoomsConfig rooms() {
 }
 
 /// Poses of what training shows in a step; they tell scenes and direction of time.
-std::vector<CameraPose> shown(const std::string& data, uint64_t step, BatchPart part) {
-  const auto source = open_triplets(test_device(), data, kLens, rooms(), kBatch / static_cast<int>(part.count),
-                                    {.seed = kSeed, .part = part});
-  return training_triplets(*source, kSeed, step, kBatch, 0.5, 0, part).poses;
+std::vector<CameraPose> shown(const std::string& data, uint64_t step, BatchPart part, BatchPart portion) {
+  const auto source =
+      open_triplets(test_device(), data, kLens, rooms(), kBatch / static_cast<int>(part.count * portion.count),
+                    {.seed = kSeed, .part = part, .portions = portion.count});
+  return training_triplets(*source, kSeed, step, kBatch, 0.5, 0, part, portion).poses;
 }
 
+/// The portions of all processes, each one's parts side by side.
 void expect_parts_make_the_whole(const std::string& data, uint64_t steps) {
+  const std::vector<std::pair<uint64_t, uint64_t>> counts{{2, 1}, {4, 1}, {1, 2}, {1, 4}, {2, 2}};
   for (uint64_t step = 0; step < steps; ++step) {
-    const auto whole = shown(data, step, {});
+    const auto whole = shown(data, step, {}, {});
     ASSERT_EQ(whole.size(), 3U * kBatch);
-    for (const uint64_t count : {2U, 4U}) {
-      const size_t length = kBatch / count;
-      for (uint64_t index = 0; index < count; ++index) {
-        const auto part = shown(data, step, {index, count});
+    for (const auto& [processes, portions] : counts) {
+      const size_t length = kBatch / (processes * portions);
+      for (uint64_t index = 0; index < processes * portions; ++index) {
+        const auto part = shown(data, step, {index % processes, processes}, {index / processes, portions});
         ASSERT_EQ(part.size(), 3 * length);
         for (size_t frame = 0; frame < 3; ++frame)
           for (size_t i = 0; i < length; ++i)
             EXPECT_EQ(part[frame * length + i], whole[frame * kBatch + index * length + i])
-                << data << " step " << step << " part " << index << " of " << count;
+                << data << " step " << step << " run " << index << " of " << processes << " processes and "
+                << portions << " portions";
       }
     }
   }

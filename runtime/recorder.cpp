@@ -200,11 +200,11 @@ void Recorder::dispatch(std::string_view shader, const std::vector<uint32_t>& co
       if (writes(kinds[i])) written.push_back(commands_->absent(true));
       continue;
     }
-    if (bindings[i].bytes > caps().max_storage_range)
+    if (bindings[i].bytes > caps().max_tensor_bytes())
       throw Error(
           fmt::format("shader {}: operand {} has {} MiB, {} binds at most {}; use a smaller --batch or "
                       "image size",
-                      shader, i, bindings[i].bytes >> 20, caps().name, caps().max_storage_range >> 20));
+                      shader, i, bindings[i].bytes >> 20, caps().name, caps().max_tensor_bytes() >> 20));
     if (bindings[i].storage == Storage::kFloat16 && !takes_float16(kinds[i]))
       throw Error(fmt::format(
           "shader {}: operand {} is float16, which is read and written by vectors of four channels only",

@@ -14,8 +14,8 @@ inline bool stores_uniform_addresses_once(std::string_view driver_info) {
 }
 
 /// Whether fma() in a shader keeps its product exact (shaders/include/product_remainder.glsl). SwiftShader's
-/// rounds it, as Vulkan allows; so may that of any other driver for CPUs.
-inline bool fuses_products(const Caps& caps) { return !caps.cpu() || caps.lavapipe; }
+/// and lavapipe's round it, as Vulkan allows; so may that of any other driver for CPUs.
+inline bool fuses_products(const Caps& caps) { return !caps.cpu(); }
 
 /// Whether a driver compiles kernels of tens of thousands of instructions. SwiftShader takes 15 GB and more to
 /// do it.

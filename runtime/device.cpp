@@ -11,6 +11,10 @@
 namespace vkopple {
 namespace {
 
+/// Views at least this long serve every tensor that a storage binding reaches on the devices with small
+/// bindings.
+constexpr uint64_t kLargeTexelBuffer = uint64_t{1} << 26;
+
 uint32_t compute_family(VkPhysicalDevice device) {
   uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
@@ -37,9 +41,11 @@ std::string missing_for(KernelFamily family, const Caps& caps) {
 }
 
 std::string missing_for(AccessPath access, const Caps& caps) {
-  if (access == AccessPath::kStorage || (caps.int64 && caps.subgroup_shuffle)) return {};
+  const bool large = caps.max_texel_elements >= kLargeTexelBuffer;
+  if (access == AccessPath::kStorage || (caps.int64 && caps.subgroup_shuffle && large)) return {};
   return "the texel access path can't be had on " + caps.name +
-         ": it needs subgroups that exchange 64-bit integers; leave the choice to the device";
+         ": it needs subgroups that exchange 64-bit integers and texel buffers of 2^26 elements; leave the "
+         "choice to the device";
 }
 
 std::string missing_for(WinogradUse use, const Caps& caps) {

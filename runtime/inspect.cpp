@@ -14,9 +14,6 @@
 namespace vkopple {
 namespace {
 
-/// Views at least this long serve every tensor that a storage binding reaches on the devices with small
-/// bindings.
-constexpr uint64_t kLargeTexelBuffer = uint64_t{1} << 26;
 constexpr uint32_t kMostRowLanes = 16;  ///< kMostLanes of row_store.glsl
 
 DeviceType type_of(VkPhysicalDeviceType type) {
@@ -84,6 +81,13 @@ void read_memory(VkPhysicalDevice device, Caps& caps) {
       caps.memory_bytes = std::max<uint64_t>(caps.memory_bytes, memory.memoryHeaps[i].size);
 }
 
+/// SwiftShader tells its version as a number alone, packed like Vulkan's.
+std::string version_text(const VkPhysicalDeviceDriverProperties& driver, const VkPhysicalDeviceProperties& p) {
+  if (driver.driverInfo[0] != '\0') return driver.driverInfo;
+  return fmt::format("{}.{}.{}", VK_VERSION_MAJOR(p.driverVersion), VK_VERSION_MINOR(p.driverVersion),
+                     VK_VERSION_PATCH(p.driverVersion));
+}
+
 void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& caps) {
   VkPhysicalDeviceMaintenance3Properties maintenance3{};
   maintenance3.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES;
@@ -103,7 +107,7 @@ void read_properties(VkPhysicalDevice device, bool has_driver_properties, Caps& 
 
   const auto& p = properties.properties;
   caps.name = p.deviceName;
-  caps.driver = has_driver_properties ? fmt::format("{} {}", driver.driverName, driver.driverInfo)
+  caps.driver = has_driver_properties ? fmt::format("{} {}", driver.driverName, version_text(driver, p))
                                       : fmt::format("driver {:#x}", p.driverVersion);
   std::memcpy(caps.uuid.data(), id.deviceUUID, caps.uuid.size());
   std::memcpy(caps.driver_uuid.data(), id.driverUUID, caps.driver_uuid.size());
@@ -157,8 +161,7 @@ Candidate inspect(VkInstance instance, VkPhysicalDevice device) {
   const auto& cooperative = CooperativeFeatures::kExtensions;
   if (std::all_of(cooperative.begin(), cooperative.end(), [&](const char* e) { return has(extensions, e); }))
     found.caps.cooperative_matrices = query_cooperative_matrices(instance, device);
-  const bool texel =
-      missing_for(AccessPath::kTexel, found.caps).empty() && found.caps.max_texel_elements >= kLargeTexelBuffer;
+  const bool texel = missing_for(AccessPath::kTexel, found.caps).empty();
   // Texel reads pay on CPU devices; GPUs cache storage buffers just as well.
   found.caps.access = texel && found.caps.cpu() ? AccessPath::kTexel : AccessPath::kStorage;
   if (!has_compute_queue(device)) found.missing.emplace_back("a compute queue");

@@ -5,17 +5,20 @@
 #include "runtime/device.h"
 #include "runtime/guarded_shader.h"
 #include "runtime/pipeline_cache.h"
+#include "runtime/quirks.h"
 #include "runtime/requirements.h"
 #include "runtime/vulkan_error.h"
 
 namespace vkopple {
 namespace {
 
-/// Specialization constants that access.glsl, subgroup.glsl and row_store.glsl may use in any shader.
+/// Specialization constants that access.glsl, subgroup.glsl, row_store.glsl and product_remainder.glsl may use
+/// in any shader.
 constexpr uint32_t kZeroOutsideId = 100;
 constexpr uint32_t kSubgroupSizeId = 101;
 constexpr uint32_t kFloat16BindingsId = 102;
 constexpr uint32_t kRowStoresId = 103;
+constexpr uint32_t kFusedProductsId = 104;
 
 VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
   return is_texel(kind, access) ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -111,6 +114,7 @@ void PipelineSet::create(Pipeline& pipeline, const Key& key) {
   set(kSubgroupSizeId, device_->caps().subgroup_size);
   set(kFloat16BindingsId, key.float16_bindings);
   set(kRowStoresId, device_->caps().row_stores ? 1 : 0);
+  set(kFusedProductsId, fuses_products(device_->caps()) ? 1 : 0);
   VkSpecializationInfo specialization{};
   specialization.mapEntryCount = static_cast<uint32_t>(entries.size());
   specialization.pMapEntries = entries.data();

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 #include "precise.glsl"
+#include "product_remainder.glsl"
 
-// y = f(a, b), element by element, for the tests of precise.glsl.
+// y = f(a, b), element by element, for the tests of precise.glsl and product_remainder.glsl.
 layout(push_constant) uniform Push {
   uint count;
   uint function;
@@ -23,6 +24,10 @@ float value(float u, float v) {
     case 5: return precise_sigmoid(u);
     case 6: return cos_sin_of_step(uint(u), uint(v)).x;
     case 7: return cos_sin_of_step(uint(u), uint(v)).y;
+    case 8: {
+      precise float product = u * v;
+      return product_remainder(u, v, product);
+    }
   }
   return 0.0;
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "product_remainder.glsl"
 #include "row_store.glsl"
 
 // A convolution, forward or transposed, as an implicit product of matrices held in registers:
@@ -96,7 +97,7 @@ void add_exactly(int r, int o4, int o, float s, float v) {
   precise float added = sum - before;
   precise float error = (before - (sum - added)) + (term - added);
   sums[r][o4][o] = sum;
-  lost[r][o4][o] += error + fma(s, v, -term);
+  lost[r][o4][o] += error + product_remainder(s, v, term);
 }
 
 #ifdef SHUFFLE

@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "access.glsl"
+#include "product_remainder.glsl"
 
 // A convolution, forward or transposed, as an implicit product of matrices through shared memory: the sums, phases and taps of
 // conv_product.comp, in the same order, for GPUs. Any sizes; nothing here depends on the size of a subgroup.
@@ -135,7 +136,7 @@ void add_exactly(int r, int o, float s, vec4 v) {
   precise vec4 added = sum - before;
   precise vec4 error = (before - (sum - added)) + (term - added);
   sums[r][o] = sum;
-  lost[r][o] += error + fma(vec4(s), v, -term);
+  lost[r][o] += error + product_remainder(vec4(s), v, term);
 }
 
 void multiply_slab(int half_, int across, int down) {

@@ -4,6 +4,7 @@
 #include "compensated.glsl"
 #include "leaky.glsl"
 #include "norm_walk.glsl"
+#include "product_remainder.glsl"
 
 // First stage of mean and variance of leaky(x), NC4HW4: invocation q of (group z, channel block y) sums its strip.
 // partials [group][block][strip][3]: the strip's mean, its sum of squared distances from that mean, and what the mean
@@ -51,7 +52,7 @@ void main() {
     mean_low = low;
     // What the product rounds off matters where the first item lies far from the mean.
     precise vec4 product = sum * offset;
-    vec4 rounded_off = fma(sum, offset, -product);
+    vec4 rounded_off = product_remainder(sum, offset, product);
     squares = max((sum2 - product) - (rounded_off + lost2), vec4(0));
   }
   uint out_at = ((group * p.blocks + cb) * p.strips + q) * 3;

@@ -1,12 +1,16 @@
+// variants: sorted plain
 // Ray-casts pictures of views of rooms. One invocation makes kLines pixels of a column.
 //
 // scene: the views packed as train/rooms/scene_pack.h says, `view_rows` rows each
 // image (views, 3, height, width): red, green, blue in [0, 1], the mean of kSamples x kSamples rays
 //
-// On CPU devices the end of a loop is the only branch: all other code runs whether a pixel needs it or not, and a loop's once at
-// least. So an invocation first sorts its pixels by what they show, and then takes one kind after the other, each in a loop of its
-// own that has the code of that kind alone. Loops ask at their end, since what follows a `break` would run once more for nothing.
-// What is linear in a ray's place in the image is computed by differences; colours are mixed once a pixel where they can be.
+// On lavapipe the end of a loop is the only branch: all other code runs whether a pixel needs it or not, and a loop's once at
+// least. So, in the variant `sorted`, an invocation first sorts its pixels by what they show, and then takes one kind after the
+// other, each in a loop of its own that has the code of that kind alone. Loops ask at their end, since what follows a `break` would
+// run once more for nothing. What is linear in a ray's place in the image is computed by differences; colours are mixed once a pixel
+// where they can be.
+// The variant `plain` has the code for the last kind alone, which can show anything. It is a fifth as long, for drivers that take
+// gigabytes of memory to compile the other one.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
@@ -34,6 +38,7 @@ void finish(Column c, int k, vec3 sum) {
   store3(image, c.first + k * width, height * width, min(sum / float(kSamples * kSamples), 1.0))
 }
 
+#ifdef SORTED
 // One surface of the room, of the given pattern.
 void draw_walls(Column c, int number, int pattern) {
   uint todo = walls_of(c, number);
@@ -141,7 +146,9 @@ void draw_pairs(Column c) {
   }
 }
 
-// The few pixels that are left.
+#endif
+
+// Pixels of any kind: all, or the few that are left.
 void draw_anything(Column c) {
   uint todo = c.anything;
   if (todo != 0u) for (;;) {
@@ -182,7 +189,9 @@ void main() {
   c.floor = load_material(surface_row(c.view, 1));
   c.ceiling = load_material(surface_row(c.view, 2));
   c.first = (view * 3 * height + y) * width + x;
-  sort_pixels(c, min(height - y, kLines));
+  int lines = min(height - y, kLines);
+#ifdef SORTED
+  sort_pixels(c, lines);
   if (kTextures != kAllSmooth) {
     draw_walls(c, 0, 0);
     draw_walls(c, 1, 1);
@@ -204,5 +213,8 @@ void main() {
   draw_body(c, c.polygon, kSquare);
   draw_body(c, c.torus, kTorus);
   draw_pairs(c);
+#else
+  c.anything = ~0u >> (32 - lines);
+#endif
   draw_anything(c);
 }

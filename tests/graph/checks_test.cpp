@@ -28,8 +28,7 @@ void run_all(const Device& device, const OpChecks& checks, Storage activations =
 TEST_P(OpCheckTest, MatchesItsReference) { run_all(test_device(), GetParam()); }
 
 TEST_P(OpCheckTest, MatchesItsReferenceOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   run_all(*other_access_device(), GetParam());
 }
 
@@ -38,8 +37,7 @@ TEST_P(OpCheckTest, MatchesItsReferenceInMixedPrecision) {
 }
 
 TEST_P(OpCheckTest, MatchesItsReferenceInMixedPrecisionOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   run_all(*other_access_device(), GetParam(), Storage::kFloat16);
 }
 
@@ -86,7 +84,7 @@ TEST_P(KernelFamilyTest, ConvolutionsAndProductsMatchTheirReferences) {
 // GPUs read storage buffers.
 TEST(SharedFamilyTest, MatchesItsReferencesOnTheOtherAccessPath) {
   const Device* device = other_access_device(KernelFamily::kShared);
-  if (device == nullptr) GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (device == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   run_family(*device, KernelFamily::kShared);
 }
 

@@ -209,8 +209,7 @@ TEST(ConvCooperativeTest, MatchesPlainLoops) {
 
 TEST(ConvCooperativeTest, MatchesPlainLoopsOnTheOtherAccessPath) {
   if (!missing().empty()) GTEST_SKIP() << missing();
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   check_shapes(*other_access_device(), 2);
 }
 

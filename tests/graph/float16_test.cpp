@@ -69,7 +69,7 @@ class OnBothPaths : public testing::TestWithParam<bool> {
  protected:
   void SetUp() override {
     device_ = GetParam() ? other_access_device() : &test_device();
-    if (device_ == nullptr) GTEST_SKIP() << "the device has one access path only";
+    if (device_ == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   }
   const Device* device_ = nullptr;
 };

@@ -112,6 +112,20 @@ TEST(PreciseTest, StepsOfATurn) {
   }
 }
 
+TEST(PreciseTest, ProductsAndWhatTheyRoundOffAreExact) {
+  std::mt19937 random(6);
+  const auto a = draw(random, {-3, 3});
+  const auto b = draw(random, {-700, 700});
+  const auto rest = probe(8, a, b);
+  size_t some = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const double exact = static_cast<double>(a[i]) * static_cast<double>(b[i]);  // 48 bits
+    ASSERT_EQ(static_cast<double>(rest[i]), exact - static_cast<double>(a[i] * b[i])) << a[i] << " * " << b[i];
+    some += rest[i] != 0 ? 1 : 0;
+  }
+  EXPECT_GT(some, a.size() / 2);
+}
+
 TEST(PreciseTest, EdgesAreThoseOfTheMathLibrary) {
   const float infinite = std::numeric_limits<float>::infinity();
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -135,8 +135,7 @@ void check_shapes(const Device& device, size_t step) {
 TEST(WeightGradientTest, MatchesItsSum) { check_shapes(test_device(), 1); }
 
 TEST(WeightGradientTest, MatchesItsSumOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   check_shapes(*other_access_device(), 4);
 }
 

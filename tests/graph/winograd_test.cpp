@@ -182,8 +182,7 @@ TEST(WinogradTest, MatchesPlainLoops) {
 }
 
 TEST(WinogradTest, MatchesPlainLoopsOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   check_shape(*other_access_device(), shape_of(3, 20, 7, 9, 36, 1));
 }
 

@@ -58,6 +58,20 @@ TEST(DeviceChoiceTest, SaysWhyThereIsNone) {
               testing::AllOf(testing::HasSubstr("old"), testing::HasSubstr("a compute queue")));
 }
 
+TEST(DeviceChoiceTest, TexelReadsNeedLongBuffersAndSubgroupsOf64BitIntegers) {
+  Caps caps;
+  caps.name = "made up";
+  caps.int64 = caps.subgroup_shuffle = true;
+  caps.max_texel_elements = uint64_t{1} << 26;
+  EXPECT_EQ(missing_for(AccessPath::kTexel, caps), "");
+  caps.max_texel_elements = 65536;
+  EXPECT_THAT(missing_for(AccessPath::kTexel, caps), testing::HasSubstr("made up"));
+  caps.max_texel_elements = uint64_t{1} << 27;
+  caps.int64 = false;
+  EXPECT_THAT(missing_for(AccessPath::kTexel, caps), testing::HasSubstr("64-bit integers"));
+  EXPECT_EQ(missing_for(AccessPath::kStorage, Caps{}), "");
+}
+
 TEST(DeviceChoiceTest, UnknownSelectorsAreWrongUse) {
   EXPECT_THROW(choose_device(kThree, "7"), UsageError);
   EXPECT_THROW(choose_device(kThree, "arc"), UsageError);

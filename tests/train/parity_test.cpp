@@ -76,8 +76,7 @@ INSTANTIATE_TEST_SUITE_P(Tiles, WinogradParityTest,
                          testing::Values(WinogradUse::kTiles2, WinogradUse::kTiles4));
 
 TEST(ParityTest, RigidOnTheOtherAccessPath) {
-  if (other_access_device() == nullptr)
-    GTEST_SKIP() << "the device has one access path only: it lacks 64-bit integers";
+  if (other_access_device() == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   expect_parity(*other_access_device(), "rigid.safetensors");
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "graph/checks/check.h"
 #include "models/model_check.h"
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "runtime/wide_vectors.h"
+#include "tools/access_option.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -22,6 +24,7 @@ struct Options {
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
+  std::optional<AccessPath> access;
 };
 
 struct Summary {
@@ -101,7 +104,7 @@ void run(const Options& options) {
   require_kernels_suit(options.kernels, Precision::kFloat32);
   const auto checks = chosen_checks(options);
   prefer_wide_vectors();
-  const Device device({.selector = options.device, .kernels = options.kernels});
+  const Device device({.selector = options.device, .access = options.access, .kernels = options.kernels});
   nlohmann::ordered_json out{{"ops", nlohmann::ordered_json::array()}};
   bool failed = false;
   if (!options.json)
@@ -142,6 +145,7 @@ void add_gradcheck(CLI::App& app) {
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);
+  add_access_option(*command, options->access);
   command->footer("Examples: vkopple gradcheck conv2d lstm\n          vkopple gradcheck --all --json");
   command->callback([options] { run(*options); });
 }

@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "runtime/wide_vectors.h"
+#include "tools/access_option.h"
 #include "tools/command.h"
 #include "tools/device_option.h"
 #include "tools/precision_option.h"
@@ -23,6 +25,7 @@ struct Options {
   bool json = false;
   std::string device;
   KernelFamily kernels = KernelFamily::kAuto;
+  std::optional<AccessPath> access;
 };
 
 nlohmann::ordered_json to_json(const ParityEntry& e) {
@@ -51,6 +54,7 @@ void run(const Options& options) {
         "--winograd 2 and 4 go with --plain-sums: convolutions that keep what sums round off are direct");
   prefer_wide_vectors();
   const Device device({.selector = options.device,
+                       .access = options.access,
                        .exact_sums = !options.plain_sums,
                        .winograd = options.winograd,
                        .kernels = options.kernels});
@@ -85,6 +89,7 @@ void add_verify(CLI::App& app) {
   command->add_flag("--json", options->json, "Print JSON");
   add_device_option(*command, options->device);
   add_kernels_option(*command, options->kernels);
+  add_access_option(*command, options->access);
   command->footer("Example: vkopple verify tests/fixtures/rigid.safetensors --dump computed.safetensors");
   command->callback([options] { run(*options); });
 }

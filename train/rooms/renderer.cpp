@@ -6,6 +6,7 @@
 
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "runtime/quirks.h"
 #include "runtime/transfer.h"
 #include "train/rooms/scene_pack.h"
 
@@ -57,8 +58,12 @@ double Lens::focal() const { return height / (2 * std::tan(fov / 2)); }
 
 double Lens::half_view() const { return std::atan(width / (2 * focal())); }
 
+RoomRenderer::Kernel RoomRenderer::kernel_for(const Caps& caps) {
+  return compiles_long_kernels(caps) ? Kernel::kSorted : Kernel::kPlain;
+}
+
 RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views,
-                           Truth truth)
+                           Truth truth, std::optional<Kernel> kernel)
     : device_(&device),
       lens_(lens),
       objects_(static_cast<std::size_t>(rooms.objects)),
@@ -67,10 +72,11 @@ RoomRenderer::RoomRenderer(const Device& device, const Lens& lens, const RoomsCo
       image_(device, image_bytes(device, lens, views), MemoryKind::kDevice, "rooms image") {
   const RoomsPush push{views, lens.height, lens.width, static_cast<int32_t>(packed_view_size(objects_) / 4),
                        static_cast<float>(lens.focal())};
-  const uint32_t lines = device.caps().cpu() ? kLinesOnCpu : kLinesOnGpu;
+  const bool sorted = kernel.value_or(kernel_for(device.caps())) == Kernel::kSorted;
+  const uint32_t lines = sorted && device.caps().cpu() ? kLinesOnCpu : kLinesOnGpu;
   const uint64_t strips = (static_cast<uint64_t>(lens.height) + lines - 1) / lines;
   Recorder recorder(device);
-  recorder.dispatch_flat("room_image",
+  recorder.dispatch_flat(sorted ? "room_image.sorted" : "room_image.plain",
                          strips * static_cast<uint64_t>(views) * static_cast<uint64_t>(lens.width),
                          {scene_.whole(), image()}, push,
                          {static_cast<uint32_t>(rooms.supersample), textures_constant(rooms.textures), lines});

@@ -7,6 +7,7 @@
 
 #include "models/model_config.h"
 #include "runtime/buffer.h"
+#include "runtime/caps.h"
 #include "runtime/recorder.h"
 #include "train/rooms/scene.h"
 
@@ -39,11 +40,18 @@ struct View {
 class RoomRenderer {
  public:
   enum class Truth { kDrawn, kLeftOut };
+  /// The kernel that draws: its pictures are the same but for rounding.
+  enum class Kernel {
+    kSorted,  ///< takes pixels by what they show
+    kPlain,   ///< a fifth of the code, slower
+  };
+  /// The one that a device can compile, and is faster with.
+  static Kernel kernel_for(const Caps& caps);
 
   /// Every scene drawn must have as many objects as `rooms`, and textures as it has them. Throws Error where
-  /// the device's memory is too small.
+  /// the device's memory is too small. `kernel`: kernel_for the device where there is none.
   RoomRenderer(const Device& device, const Lens& lens, const RoomsConfig& rooms, int views,
-               Truth truth = Truth::kDrawn);
+               Truth truth = Truth::kDrawn, std::optional<Kernel> kernel = {});
 
   /// Bytes of device memory that such a renderer takes.
   static uint64_t device_bytes(const Lens& lens, const RoomsConfig& rooms, int views, Truth truth);

@@ -278,11 +278,47 @@ TEST(RoomRenderer, TooMuchAtOnceIsAnError) {
 
 TEST(RoomRenderer, BothAccessPathsDrawTheSame) {
   const Device* other = other_access_device();
-  if (other == nullptr) GTEST_SKIP() << "the device has one access path only";
+  if (other == nullptr) GTEST_SKIP() << missing_for(AccessPath::kTexel, test_device().caps());
   const Still still(RoomShape::kTorus);
   const Pixels a = draw(test_device(), still, still.lens), b = draw(*other, still, still.lens);
   for (std::size_t i = 0; i < a.depth.size(); ++i) EXPECT_NEAR(a.depth[i], b.depth[i], 1e-4);
   EXPECT_EQ(a.label, b.label);
+}
+
+TEST(RoomRenderer, KernelsAreChosenByWhatCompilesThem) {
+  Caps caps;
+  caps.type = DeviceType::kDiscrete;
+  EXPECT_EQ(RoomRenderer::kernel_for(caps), RoomRenderer::Kernel::kSorted);
+  caps.type = DeviceType::kCpu;
+  EXPECT_EQ(RoomRenderer::kernel_for(caps), RoomRenderer::Kernel::kPlain);
+  caps.lavapipe = true;
+  EXPECT_EQ(RoomRenderer::kernel_for(caps), RoomRenderer::Kernel::kSorted);
+}
+
+TEST(RoomRenderer, BothKernelsDrawTheSame) {
+  using Kernel = RoomRenderer::Kernel;
+  if (RoomRenderer::kernel_for(test_device().caps()) != Kernel::kSorted)
+    GTEST_SKIP() << test_device().caps().name << " takes too much memory to compile the long one";
+  RoomsConfig config;
+  config.textures = RoomTextures::kMixed;
+  const Lens lens(37, 48, 1.5);  // 37 lines: neither kernel's columns end with the picture
+  const auto scenes = rich_scenes(config, lens, 6);
+  std::vector<View> views;
+  for (const Scene& scene : scenes) views.push_back({&scene, 2});
+  RoomRenderer sorted(test_device(), lens, config, 6, RoomRenderer::Truth::kLeftOut, Kernel::kSorted);
+  RoomRenderer plain(test_device(), lens, config, 6, RoomRenderer::Truth::kLeftOut, Kernel::kPlain);
+  sorted.render(views);
+  plain.render(views);
+  const auto a = pixels_of(sorted, sorted.image()), b = pixels_of(plain, plain.image());
+  std::size_t apart = 0;
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    apart += std::abs(a[i] - b[i]) > 1e-3F ? 1 : 0;
+    sum += std::abs(a[i] - b[i]);
+  }
+  // Single samples, of 16, may fall on the other side of an edge.
+  EXPECT_LT(static_cast<double>(apart), 0.01 * static_cast<double>(a.size()));
+  EXPECT_LT(sum / static_cast<double>(a.size()), 1e-3);
 }
 
 TEST(RoomRenderer, PicturesAreColouredAndVaried) {

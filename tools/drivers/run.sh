@@ -1,0 +1,179 @@
+# shellcheck shell=bash disable=SC2154,SC2034
+# Sourced by tools/test-drivers, after fetch.sh: what is run on one driver.
+
+# Runs a command on a driver, with caches of its own, so that nobody's tuned choices count.
+on_driver() { # name, command...
+  local folder=$drivers/$1 path variables
+  variables=(XDG_CACHE_HOME="$folder/cache" MESA_SHADER_CACHE_DIR="$folder/cache" VKOPPLE_DEVICE="$(device_of "$1")")
+  if [[ $1 != gpu ]]; then
+    # Older loaders know the second name alone.
+    variables+=(VK_DRIVER_FILES="$folder/icd.json" VK_ICD_FILENAMES="$folder/icd.json")
+    path=$(library_path "$1")
+    [[ -z $path ]] || variables+=(LD_LIBRARY_PATH="$path")
+  fi
+  env "${variables[@]}" "${@:2}"
+}
+
+# Index of the device that a driver is tried on: an unpacked driver has one. Nothing where there is no GPU.
+device_of() { # name
+  [[ $1 == gpu ]] || { echo 0; return 0; }
+  "$vkopple" devices --json 2>/dev/null |
+    awk -F '[:, ]+' '/"index":/ { index_ = $3 } /"type": "(discrete|integrated|virtual)"/ && !found { print index_; found = 1 }'
+}
+
+# Whether a driver is there and has a device; otherwise the last line on standard error says why not.
+have_driver() { # name
+  if [[ $1 == gpu ]]; then
+    mkdir -p "$drivers/gpu"
+    [[ -n $(device_of gpu) ]] || { echo "no GPU is at hand" >&2; return 1; }
+    return 0
+  fi
+  fetch_driver "$1" || return 1
+  on_driver "$1" "$vkopple" devices >/dev/null
+}
+
+# A field of the device.
+device_field() { # name, field
+  on_driver "$1" "$vkopple" devices --json | sed -nE "s/^ *\"$2\": \"?([^\"]*)\"?,?\$/\1/p" | sed -n "$(($(device_of "$1") + 1))p"
+}
+
+# gtest's filter of suites that use a device: those of ops, kernels, models and training. What the host does alone, the commands'
+# options and injected faults don't depend on the driver.
+device_suites() {
+  local files
+  mapfile -t files < <(grep -rlE '_device\(|tiny_model|tiny_run' tests/graph tests/models tests/runtime tests/shaders tests/train \
+    --include='*_test.cpp' --exclude=faults_test.cpp)
+  sed -nE 's/^TEST(_F|_P)?\(([A-Za-z0-9_]+),.*/\2.*:*\/\2.*/p' "${files[@]}" | sort -u | paste -sd:
+  echo ":Determinism.*"
+}
+
+count_in() { # log, PASSED|SKIPPED|FAILED: gtest's own count
+  local count
+  count=$(sed -nE "s/^\[  $2  ?\] ([0-9]+) tests?.*/\1/p" "$1" | tail -n 1)
+  echo "${count:-0}"
+}
+
+run_tests() { # name; sets `tests`
+  local log=$logs/tests.log
+  on_driver "$1" "$root/build/$preset/vkopple_tests" --gtest_filter="$(device_suites | tr -d '\n')" >"$log" 2>&1 || broken+=" tests"
+  tests="$(count_in "$log" PASSED), $(count_in "$log" SKIPPED), $(count_in "$log" FAILED)"
+  # A test that brings the program down leaves no counts.
+  grep -q '^\[  PASSED  \]' "$log" || tests="died in $(sed -nE 's/^\[ RUN      \] //p' "$log" | tail -n 1)"
+  echo "tests: $tests"
+  sed -nE '/^\[  FAILED  \] [^0-9]/p' "$log" | sort -u
+  echo "reasons of what was skipped or left out, if anything was:"
+  { grep -hE "can't (run|be had) on|has not what it takes|stores no rows|too much memory" "$log" || true; } | sed -E 's/^.*: Skipped//' |
+    sed -E 's/(has not what it takes): .*/\1/' | sort | uniq -c | sort -rn | head -n 12
+}
+
+run_fixtures() { # name; sets `verified`
+  local fixture right=0
+  for fixture in "${fixtures[@]}"; do
+    if on_driver "$1" "$vkopple" verify "tests/fixtures/$fixture.safetensors" >"$logs/verify-$fixture.log" 2>&1; then
+      right=$((right + 1))
+    else
+      broken+=" $fixture"
+    fi
+  done
+  verified="$right of ${#fixtures[@]}"
+  echo "fixtures: $verified"
+}
+
+# Every family on every access path, also those that the device would not choose. Sets `families`.
+run_families() { # name
+  local family access fixture log right=0 refused=()
+  for family in registers shared plain; do
+    for access in texel storage; do
+      for fixture in "${family_fixtures[@]}"; do
+        log=$logs/verify-$fixture-$family-$access.log
+        if on_driver "$1" "$vkopple" verify "tests/fixtures/$fixture.safetensors" --kernels "$family" --access "$access" >"$log" 2>&1; then
+          right=$((right + 1))
+        elif grep -qE "can't (run|be had) on" "$log"; then
+          echo "$family, $access: $(tail -n 1 "$log")"
+          refused+=("$family/$access")
+          break
+        else
+          broken+=" $fixture:$family/$access"
+        fi
+      done
+    done
+  done
+  families="$right runs right"
+  ((${#refused[@]} == 0)) || families+="; refused: ${refused[*]}"
+  echo "families: $families"
+}
+
+run_gradcheck() { # name; sets `gradients`
+  gradients=right
+  on_driver "$1" "$vkopple" gradcheck --all >"$logs/gradcheck.log" 2>&1 || { gradients=WRONG; broken+=" gradcheck"; }
+  echo "gradcheck: $gradients"
+}
+
+# All networks from the first step on, and an evaluation at the end.
+train_once() { # name, run's folder
+  rm -rf "$2"
+  on_driver "$1" "$vkopple" train tiny --set 'training.stages=[]' --data rooms:1 --seed 1 --steps "$steps" --eval-every "$steps" \
+    --checkpoint-every 0 --quiet --out "$2" >"$2.log" 2>&1
+}
+
+losses() { # run's folder: the total loss of every step
+  sed -nE 's/.*"losses":\{[^}]*"total":([-+0-9.e]+).*/\1/p' "$1/log.jsonl"
+}
+
+# How far a run's total losses are from another's, as parts of these: in the first step, of the mean over all, and at most in any.
+differences() { # two runs' folders
+  paste -d' ' <(losses "$1") <(losses "$2") | awk '
+    function size(x) { return x < 0 ? -x : x }
+    { d = size(($1 - $2) / $2); a += $1; b += $2; if (NR == 1) first = d; if (!(d <= most)) most = d }
+    END { printf "%.1e %.1e %.1e\n", first, size((a - b) / b), most }'
+}
+
+# Two runs, the second with another number of lavapipe's threads; sets `loss` and `bytes`, and `yardstick` by the first driver.
+run_training() { # name
+  local run=$drivers/$1/run again=$drivers/$1/run-again first mean most
+  loss=none
+  bytes=none
+  if ! train_once "$1" "$run" || [[ $(losses "$run" | wc -l) != "$steps" ]]; then
+    broken+=" training"
+    return 0
+  fi
+  loss=$(losses "$run" | tail -n 1)
+  if [[ -z $yardstick ]]; then
+    yardstick=$1
+    loss+=", which others are compared with"
+  else
+    read -r first mean most < <(differences "$run" "$drivers/$yardstick/run")
+    loss+=", from $yardstick $first, $mean, $most"
+    awk "BEGIN { exit !($first <= $first_bound && $mean <= $mean_bound) }" || broken+=" loss"
+  fi
+  if LP_NUM_THREADS=1 train_once "$1" "$again" && cmp -s "$run/latest.safetensors" "$again/latest.safetensors" &&
+    [[ $(times_aside "$run") == "$(times_aside "$again")" ]]; then
+    bytes=yes
+  else
+    bytes=NO
+    broken+=" bytes"
+  fi
+  echo "training: $loss; the same bytes twice: $bytes"
+}
+
+times_aside() { # run's folder: its log, evaluation included
+  sed -E 's/"(data_)?seconds":[-+0-9.e]+,?//g' "$1/log.jsonl"
+}
+
+# Everything on one driver. Sets `row`, a line of the table, and `broken`, what failed.
+test_driver() { # name
+  local start=$SECONDS logs=$drivers/$1/logs tests="left out" gradients="left out" verified families loss bytes version time
+  broken=""
+  mkdir -p "$logs"
+  version=$(cat "$drivers/$1/version" 2>/dev/null || true)
+  run_training "$1"
+  run_fixtures "$1"
+  run_families "$1"
+  if [[ -z $quick ]]; then
+    run_gradcheck "$1"
+    run_tests "$1"
+  fi
+  time=$(printf '%d:%02d' $(((SECONDS - start) / 60)) $(((SECONDS - start) % 60)))
+  row="| $1 | $(device_field "$1" driver)${version:+, package $version} | $(device_field "$1" name) | $tests | $verified | $families | $gradients | $loss | $bytes | $time |"
+  [[ -z $broken ]] || echo "FAILED:$broken"
+}

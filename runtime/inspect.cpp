@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runtime/cooperative_matrix.h"
+#include "runtime/device_extensions.h"
 #include "runtime/instance.h"
 #include "runtime/quirks.h"
 #include "runtime/requirements.h"
@@ -29,21 +30,6 @@ DeviceType type_of(VkPhysicalDeviceType type) {
     default:
       return DeviceType::kOther;
   }
-}
-
-std::vector<VkExtensionProperties> extensions_of(VkPhysicalDevice device) {
-  uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr),
-        "vkEnumerateDeviceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "vkEnumerateDeviceExtensionProperties");
-  return extensions;
-}
-
-bool has(const std::vector<VkExtensionProperties>& extensions, std::string_view name) {
-  return std::any_of(extensions.begin(), extensions.end(),
-                     [&](const VkExtensionProperties& e) { return name == e.extensionName; });
 }
 
 bool has_compute_queue(VkPhysicalDevice device) {

@@ -3,26 +3,12 @@
 #include <algorithm>
 #include <fstream>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "runtime/device.h"
-#include "runtime/vulkan_error.h"
+#include "runtime/device_extensions.h"
 
 namespace vkopple {
 namespace {
-
-bool tells_budget(VkPhysicalDevice device) {
-  uint32_t count = 0;
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr),
-        "vkEnumerateDeviceExtensionProperties");
-  std::vector<VkExtensionProperties> extensions(count);
-  check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
-        "vkEnumerateDeviceExtensionProperties");
-  return std::any_of(extensions.begin(), extensions.end(), [](const VkExtensionProperties& e) {
-    return std::string_view(e.extensionName) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
-  });
-}
 
 /// Of the largest device-local heap.
 uint64_t budget_left(VkPhysicalDevice device) {
@@ -59,7 +45,9 @@ uint64_t free_memory(const Device& device) {
     std::ifstream meminfo("/proc/meminfo");
     return available_memory(meminfo).value_or(caps.memory_bytes);
   }
-  return tells_budget(device.physical()) ? budget_left(device.physical()) : caps.memory_bytes;
+  return has(extensions_of(device.physical()), VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)
+             ? budget_left(device.physical())
+             : caps.memory_bytes;
 }
 
 }  // namespace vkopple

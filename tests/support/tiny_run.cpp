@@ -51,12 +51,12 @@ bool TinyRun::train(FileSystem& files, uint64_t* shown, const std::function<bool
   return trainer.run(listener, stop);
 }
 
-std::map<std::string, std::vector<std::byte>> TinyRun::remains() const {
+std::map<std::string, std::vector<std::byte>> remains_of(const std::filesystem::path& run) {
   std::map<std::string, std::vector<std::byte>> all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
+  for (const auto& entry : std::filesystem::directory_iterator(run))
     if (entry.path().filename().string().find(".safetensors") != std::string::npos)
       all[entry.path().filename().string()] = read_file(entry.path(), kLargestFile);
-  std::ifstream log(RunFolder(folder).log());
+  std::ifstream log(RunFolder(run).log());
   std::string line;
   for (int number = 1; std::getline(log, line); ++number) {
     auto json = nlohmann::json::parse(line);

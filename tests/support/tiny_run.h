@@ -14,6 +14,10 @@
 
 namespace vkopple::test {
 
+/// All that a run leaves in its folder but for times: the bytes of checkpoints by their names and, by "log N",
+/// the N-th line of the log without seconds.
+std::map<std::string, std::vector<std::byte>> remains_of(const std::filesystem::path& run);
+
 /// A run of a few steps of the depth network on 16 × 16 pixels, with a checkpoint after every step.
 struct TinyRun {
   std::filesystem::path folder;
@@ -30,9 +34,7 @@ struct TinyRun {
       FileSystem& files = system_files(), uint64_t* shown = nullptr,
       const std::function<bool()>& stop = [] { return false; }) const;
 
-  /// All that the run leaves but for times: the bytes of checkpoints by their names and, by "log N", the N-th
-  /// line of the log without seconds.
-  std::map<std::string, std::vector<std::byte>> remains() const;
+  std::map<std::string, std::vector<std::byte>> remains() const { return remains_of(folder); }
 };
 
 }  // namespace vkopple::test

@@ -1,18 +1,21 @@
 // The same seed, device and driver give the same bytes: each command runs twice, as processes of their own.
 #include <gtest/gtest.h>
 
-#include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <algorithm>
+#include <filesystem>
+#include <span>
+#include <string>
 
 #include "tests/support/program.h"
 #include "tests/support/temp_folder.h"
+#include "tests/support/tiny_run.h"
 #include "train/atomic_file.h"
 
 namespace vkopple {
 namespace {
 
 using test::expect_success;
+using test::remains_of;
 using test::run_vkopple;
 using test::TempFolder;
 
@@ -25,38 +28,17 @@ constexpr const char* kConfig = R"({
       {"name": "depth", "networks": ["depth"], "hypotheses": "background", "steps": 20}, {"name": "all"}]},
     "rooms": {"supersample": 2}})";
 
-/// Bytes of every file of a kind in a folder, by name.
-std::map<std::string, std::vector<std::byte>> files(const std::filesystem::path& folder,
-                                                    const std::string& extension) {
-  std::map<std::string, std::vector<std::byte>> all;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (entry.path().extension() == extension)
-      all[entry.path().filename().string()] = read_file(entry.path(), kLargestFile);
-  return all;
-}
-
-/// The lines of a run's log without times.
-std::vector<std::string> log_lines(const std::filesystem::path& run) {
-  std::istringstream text(read_text_file(run / "log.jsonl", kLargestFile));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(text, line);) {
-    auto json = nlohmann::json::parse(line);
-    json.erase("seconds");
-    json.erase("data_seconds");
-    lines.push_back(json.dump());
-  }
-  return lines;
-}
-
 class Determinism : public testing::Test {
  protected:
   Determinism() { write_file(config(), kConfig); }
 
   std::string config() const { return folder_ / "config.json"; }
-  std::string run(const std::string& name, const std::string& seed = "3") const {
+  std::string run(const std::string& name, const std::string& steps = "50",
+                  const std::string& seed = "3") const {
     const std::string out = folder_ / name;
-    expect_success(run_vkopple({"train", config(), "--data", "rooms:1", "--out", out, "--steps", "50", "--seed",
-                                seed, "--eval-every", "25", "--checkpoint-every", "10", "--keep", "0"}));
+    expect_success(
+        run_vkopple({"train", config(), "--data", "rooms:1", "--out", out, "--steps", steps, "--seed", seed,
+                     "--eval-every", "25", "--checkpoint-every", "10", "--keep", "0"}));
     return out;
   }
   std::string scores(const std::string& model, const std::string& data) const {
@@ -75,27 +57,30 @@ class Determinism : public testing::Test {
 
 TEST_F(Determinism, DataFiftyStepsAndEvaluationAreTheSameBytes) {
   const std::string one_data = rooms("one data"), two_data = rooms("two data");
-  const auto shards = files(one_data, ".tar");
-  ASSERT_EQ(shards.size(), 1U);
-  EXPECT_TRUE(shards == files(two_data, ".tar"));
+  int shards = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(one_data)) {
+    if (entry.path().extension() != ".tar") continue;
+    ++shards;
+    EXPECT_EQ(read_file(entry.path(), kLargestFile),
+              read_file(std::filesystem::path(two_data) / entry.path().filename(), kLargestFile));
+  }
+  EXPECT_EQ(shards, 1);
 
   const std::string one = run("one"), two = run("two");
-  const auto checkpoints = files(one, ".safetensors");
-  ASSERT_EQ(checkpoints.size(), 7U);  // of every tenth step, the latest, the best
-  const auto others = files(two, ".safetensors");
-  for (const auto& [name, bytes] : checkpoints)
-    EXPECT_TRUE(others.contains(name) && others.at(name) == bytes) << name;
-  const auto lines = log_lines(one);
-  ASSERT_EQ(lines.size(), 50U);
-  EXPECT_NE(lines[49].find("\"iou\""), std::string::npos);  // what is compared holds an evaluation
-  EXPECT_EQ(lines, log_lines(two));
+  const auto left = remains_of(one);
+  ASSERT_EQ(left.size(), 7U + 50U);  // checkpoints of every tenth step, the latest, the best; the log's lines
+  EXPECT_TRUE(left == remains_of(two));
+  const auto& line = left.at("log 50");
+  const std::string evaluated = "\"iou\"";  // what is compared holds an evaluation
+  const auto bytes = std::as_bytes(std::span(evaluated));
+  EXPECT_NE(std::search(line.begin(), line.end(), bytes.begin(), bytes.end()), line.end());
 
   const std::string model = one + "/latest.safetensors";
   EXPECT_EQ(scores(model, one_data), scores(two + "/latest.safetensors", one_data));
   EXPECT_EQ(scores(model, "rooms:2"), scores(model, "rooms:2"));
   // Weights of another seed are others, so that the comparison above could fail.
-  EXPECT_NE(files(run("three", "4"), ".safetensors").at("step-000010.safetensors"),
-            checkpoints.at("step-000010.safetensors"));
+  EXPECT_NE(remains_of(run("three", "10", "4")).at("step-000010.safetensors"),
+            left.at("step-000010.safetensors"));
 }
 
 }  // namespace

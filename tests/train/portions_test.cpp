@@ -11,6 +11,7 @@
 #include "runtime/device.h"
 #include "runtime/error.h"
 #include "tests/support/expect_error.h"
+#include "tests/support/relative_error.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_device.h"
 #include "tests/support/threaded_peers.h"
@@ -28,6 +29,7 @@ namespace vkopple {
 namespace {
 
 using test::expect_error;
+using test::relative_error;
 
 using Numbers = std::vector<float>;
 
@@ -88,15 +90,6 @@ class Portioned {
   std::unique_ptr<TrainingStep> training_;
   std::unique_ptr<TripletSource> source_;
 };
-
-double relative_error(const Numbers& got, const Numbers& wanted) {
-  double difference = 0, norm = 0;
-  for (size_t i = 0; i < wanted.size(); ++i) {
-    difference += std::pow(double{got[i]} - double{wanted[i]}, 2);
-    norm += std::pow(double{wanted[i]}, 2);
-  }
-  return std::sqrt(difference / norm);
-}
 
 /// A step of 8 triplets in two portions, and each portion as a step of its own. In mixed precision both have
 /// the same scale of the loss, so that gradients are compared as they lie.

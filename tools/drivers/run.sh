@@ -1,6 +1,8 @@
 # shellcheck shell=bash disable=SC2154,SC2034
 # Sourced by tools/test-drivers, after fetch.sh: what is run on one driver.
 
+test_shards=6
+
 # Runs a command on a driver, with caches of its own, so that nobody's tuned choices count.
 on_driver() { # name, command...
   local folder=$drivers/$1 path variables
@@ -47,18 +49,24 @@ device_suites() {
   echo ":Determinism.*"
 }
 
-count_in() { # log, PASSED|SKIPPED|FAILED: gtest's own count
-  local count
-  count=$(sed -nE "s/^\[  $2  ?\] ([0-9]+) tests?.*/\1/p" "$1" | tail -n 1)
-  echo "${count:-0}"
+count_in() { # log, PASSED|SKIPPED|FAILED: gtest's own counts of all processes
+  sed -nE "s/^\[  $2  ?\] ([0-9]+) tests?.*/\1/p" "$1" | awk '{ sum += $1 } END { print sum + 0 }'
 }
 
 run_tests() { # name; sets `tests`
-  local log=$logs/tests.log
-  on_driver "$1" "$root/build/$preset/vkopple_tests" --gtest_filter="$(device_suites | tr -d '\n')" >"$log" 2>&1 || broken+=" tests"
+  local log=$logs/tests.log shard filter part died=""
+  filter=$(device_suites | tr -d '\n')
+  # In several processes, since drivers keep what they compiled.
+  for ((shard = 0; shard < test_shards; ++shard)); do
+    part=$logs/tests-$shard.log
+    GTEST_TOTAL_SHARDS=$test_shards GTEST_SHARD_INDEX=$shard on_driver "$1" "$root/build/$preset/vkopple_tests" --gtest_filter="$filter" >"$part" 2>&1 ||
+      [[ $broken == *" tests"* ]] || broken+=" tests"
+    # A test that brings the program down leaves no counts.
+    grep -q '^\[  PASSED  \]' "$part" || died+=" $(sed -nE 's/^\[ RUN      \] //p' "$part" | tail -n 1)"
+  done
+  cat "$logs"/tests-*.log >"$log"
   tests="$(count_in "$log" PASSED), $(count_in "$log" SKIPPED), $(count_in "$log" FAILED)"
-  # A test that brings the program down leaves no counts.
-  grep -q '^\[  PASSED  \]' "$log" || tests="died in $(sed -nE 's/^\[ RUN      \] //p' "$log" | tail -n 1)"
+  [[ -z $died ]] || tests+="; died in$died"
   echo "tests: $tests"
   sed -nE '/^\[  FAILED  \] [^0-9]/p' "$log" | sort -u
   echo "reasons of what was skipped or left out, if anything was:"

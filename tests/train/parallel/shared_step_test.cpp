@@ -5,6 +5,7 @@
 
 #include "runtime/device.h"
 #include "runtime/error.h"
+#include "tests/support/relative_error.h"
 #include "tests/support/test_device.h"
 #include "tests/support/threaded_peers.h"
 #include "train/data/open_source.h"
@@ -17,6 +18,8 @@
 
 namespace vkopple {
 namespace {
+
+using test::relative_error;
 
 using Numbers = std::vector<float>;
 
@@ -67,15 +70,6 @@ Outcome train(const Device& device, const Config& config, Peers* peers, int step
     outcome.gradients[network] = training.executor().read(training.graph().gradient(network));
   for (const LayoutEntry& entry : store.layout().weights()) outcome.weights[entry.name] = store.read(entry);
   return outcome;
-}
-
-double relative_error(const Numbers& got, const Numbers& wanted) {
-  double difference = 0, norm = 0;
-  for (size_t i = 0; i < wanted.size(); ++i) {
-    difference += std::pow(double{got[i]} - double{wanted[i]}, 2);
-    norm += std::pow(double{wanted[i]}, 2);
-  }
-  return std::sqrt(difference / norm);
 }
 
 TEST(SharedStep, GradientsAreThoseOfOneProcess) {

@@ -36,6 +36,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.choice("orientation", c.orientation, kOrientationNames);
   object.choice("pose_loss", c.pose_loss, kPoseLossNames);
   object.choice("statistics_frames", c.statistics_frames, kStatisticsFramesNames);
+  object.choice("mask_statistics", c.mask_statistics, kMaskStatisticsNames);
   object.numbers("dropout", c.dropout, 0, 0.95);
   object.finish();
   if (c.identity > c.code) {
@@ -82,6 +83,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"orientation", kOrientationNames[static_cast<std::size_t>(c.orientation)]},
           {"pose_loss", kPoseLossNames[static_cast<std::size_t>(c.pose_loss)]},
           {"statistics_frames", kStatisticsFramesNames[static_cast<std::size_t>(c.statistics_frames)]},
+          {"mask_statistics", kMaskStatisticsNames[static_cast<std::size_t>(c.mask_statistics)]},
           {"dropout", c.dropout}};
 }
 

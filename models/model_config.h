@@ -19,6 +19,11 @@ inline constexpr std::array<std::string_view, 2> kPoseLossNames{"kl", "js"};
 enum class StatisticsFrames { kAll, kSecond };
 inline constexpr std::array<std::string_view, 2> kStatisticsFramesNames{"all", "second"};
 
+/// Over what the mask decoder's batch norms take their statistics (docs/model.md §2.2): each slot's pass has
+/// its own, or all slots of a frame have them together.
+enum class MaskStatistics { kApart, kTogether };
+inline constexpr std::array<std::string_view, 2> kMaskStatisticsNames{"apart", "together"};
+
 /// What the slots say of an object's orientation (docs/model.md §8): a distribution over yaw, or three Euler
 /// angles.
 enum class Orientation { kYaw, kEuler };
@@ -60,6 +65,7 @@ struct ModelConfig {
   Orientation orientation = Orientation::kYaw;
   PoseLossKind pose_loss = PoseLossKind::kKl;
   StatisticsFrames statistics_frames = StatisticsFrames::kAll;
+  MaskStatistics mask_statistics = MaskStatistics::kApart;
   std::array<double, 3> dropout{0.05, 0.05, 0.0005};  ///< depth, object, imagination network
 
   bool operator==(const ModelConfig&) const = default;

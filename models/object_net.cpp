@@ -15,6 +15,7 @@
 #include "graph/ops/slice.h"
 #include "models/blocks.h"
 #include "models/slot_counters.h"
+#include "runtime/error.h"
 
 namespace vkopple {
 namespace {
@@ -92,8 +93,9 @@ Value decode_masks(LayerFactory& layers, const ModelConfig& config, Value codes,
   const int64_t slots = codes.shape()[0];
   const int64_t batch = codes.shape()[1];
   const int64_t samples = slots * batch;
+  const int64_t groups = config.mask_statistics == MaskStatistics::kApart ? slots : 1;
   const Norm norm = [&](Value x, const std::string& name) {
-    return layers.act_batch_norm(x, name, kDecoderEpsilon, slots);
+    return layers.act_batch_norm(x, name, kDecoderEpsilon, groups);
   };
   const Value flat = graph.reshape(codes, row_major({samples, config.code}));
   const Value seed = leaky_relu(
@@ -113,7 +115,7 @@ bool fits(const LayerFactory& layers, const ModelConfig& config, int64_t samples
 }
 
 /// One frame's mask logits (K, B, H, W) from its raw numbers (B, K, R) and skips: all slots in one call where
-/// they fit, else one after the other.
+/// they fit, else one after the other. Throws Error where they don't and need statistics together.
 Value mask_logits(LayerFactory& layers, const ModelConfig& config, Value raw, const std::vector<Value>& skips) {
   const Scope scope(layers.graph(), "masks");
   const int64_t batch = raw.shape()[0];
@@ -122,6 +124,12 @@ Value mask_logits(LayerFactory& layers, const ModelConfig& config, Value raw, co
   if (fits(layers, config, config.slots * batch)) {
     logits = decode_masks(layers, config, codes, skips);
   } else {
+    if (layers.options().training && config.mask_statistics == MaskStatistics::kTogether) {
+      throw Error(
+          fmt::format("this device can't bind the masks of {} slots of {} images at once, as "
+                      "mask_statistics \"together\" needs; give a smaller --batch",
+                      config.slots, batch));
+    }
     std::vector<Value> slots;
     for (int64_t k = 0; k < config.slots; ++k)
       slots.push_back(decode_masks(layers, config, take_outer(codes, k, 1), skips));

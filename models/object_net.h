@@ -14,9 +14,9 @@ struct ObjectOutputs {
 };
 
 /// The object-extraction network (docs/model.md §2.2): images NC4HW4 (F·B, 3, H, W), frame after frame. Each
-/// frame, and in the mask decoder each slot of it, has batch statistics of its own, in that order. Frames with
-/// `masks` pass the decoder, each in a call of its own: backward goes through none but those that the loss
-/// needs.
+/// frame, and in the mask decoder each slot of it unless `mask_statistics` says otherwise, has batch statistics
+/// of its own, in that order. Frames with `masks` pass the decoder, each in a call of its own: backward goes
+/// through none but those that the loss needs.
 std::vector<ObjectOutputs> object_net(LayerFactory& layers, const ModelConfig& config, Value images,
                                       const std::vector<bool>& masks);
 }  // namespace vkopple

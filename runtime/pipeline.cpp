@@ -26,7 +26,7 @@ VkDescriptorType descriptor_type(BindingKind kind, AccessPath access) {
 
 }  // namespace
 
-PipelineSet::PipelineSet(const Device& device, std::filesystem::path cache_folder) : device_(&device) {
+PipelineSet::PipelineSet(const Device& device, const std::filesystem::path& cache_folder) : device_(&device) {
   std::vector<std::byte> data;
   if (!cache_folder.empty()) {
     cache_file_ = cache_folder / pipeline_cache_name(device.caps());

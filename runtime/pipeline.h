@@ -30,7 +30,7 @@ class PipelineSet {
  public:
   /// cache_folder: where the cache file lies; empty for none. A damaged or foreign file is ignored with a
   /// warning.
-  PipelineSet(const Device& device, std::filesystem::path cache_folder);
+  PipelineSet(const Device& device, const std::filesystem::path& cache_folder);
   /// Writes the cache where it grew.
   ~PipelineSet();
   PipelineSet(const PipelineSet&) = delete;

@@ -31,8 +31,8 @@ class Push {
  public:
   Push() = default;
   template <class T>
-  requires std::is_trivially_copyable_v<T> Push(const T& values)
-      : bytes_(sizeof(T)) {  // NOLINT(google-explicit-constructor): reads as the block itself
+  // NOLINTNEXTLINE(google-explicit-constructor): reads as the block itself
+  requires std::is_trivially_copyable_v<T> Push(const T& values) : bytes_(sizeof(T)) {
     static_assert(sizeof(T) <= 128 && sizeof(T) % 4 == 0);
     std::memcpy(data_.data(), &values, sizeof(T));
   }

@@ -62,6 +62,8 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): only describing the command line to CLI11 lies outside of run's
+// try
 int main(int argc, char** argv) {
   // Results go to standard output; what is said about them to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("vkopple"));

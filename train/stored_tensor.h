@@ -47,8 +47,8 @@ struct TensorView {
       : dtype(type), shape(std::move(sizes)), bytes(memory) {}
   TensorView(StoredShape sizes, std::span<const float> values)
       : TensorView(StoredType::kF32, std::move(sizes), std::as_bytes(values)) {}
-  TensorView(const StoredTensor& tensor)
-      : TensorView(tensor.dtype, tensor.shape, tensor.bytes) {}  // NOLINT: implicit
+  // NOLINTNEXTLINE(google-explicit-constructor): a tensor is a view of itself
+  TensorView(const StoredTensor& tensor) : TensorView(tensor.dtype, tensor.shape, tensor.bytes) {}
 };
 
 /// Each element as a float (double), from any element type but Bool; 64-bit values round.

@@ -40,26 +40,25 @@ static picture read_ppm(const char* path) {
 
 static void print_object(const vkopple_seen* seen, size_t i, const vkopple_object* o) {
   const double* rotation = vkopple_seen_rotation(seen, i);
-  int k;
   printf("object %zu %.17g %.17g %.17g %.17g", i, o->share, o->location[0], o->location[1], o->location[2]);
   if (rotation == NULL) printf(" %.17g %.17g", o->yaw, o->yaw_probability);
-  for (k = 0; rotation != NULL && k < 9; ++k) printf(" %.17g", rotation[k]);
+  for (int k = 0; rotation != NULL && k < 9; ++k) printf(" %.17g", rotation[k]);
   printf("\n");
 }
 
 static void print_seen(const vkopple_seen* seen) {
-  int32_t height, width;
-  size_t count, i;
+  int32_t height = 0, width = 0;
+  size_t count = 0;
   const float* depth = vkopple_seen_depth(seen);
   const vkopple_object* objects = vkopple_seen_objects(seen, &count);
   float nearest = depth[0], farthest = depth[0];
   vkopple_seen_size(seen, &height, &width);
-  for (i = 0; i < (size_t)height * (size_t)width; ++i) {
+  for (size_t i = 0; i < (size_t)height * (size_t)width; ++i) {
     if (depth[i] < nearest) nearest = depth[i];
     if (depth[i] > farthest) farthest = depth[i];
   }
   printf("depth %.9g %.9g\n", (double)nearest, (double)farthest);
-  for (i = 0; i < count; ++i) print_object(seen, i, &objects[i]);
+  for (size_t i = 0; i < count; ++i) print_object(seen, i, &objects[i]);
 }
 
 int main(int argc, char** argv) {

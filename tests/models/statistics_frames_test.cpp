@@ -109,7 +109,8 @@ TEST_P(StatisticsFramesTest, RunningAveragesSeeTheFramesTheyAreTold) {
 INSTANTIATE_TEST_SUITE_P(TrainingAndSize, StatisticsFramesTest,
                          testing::Combine(testing::Bool(),
                                           // The second: frames and slots one by one.
-                                          testing::Values(~uint64_t{0}, uint64_t{16 * 16 * 16 * kBatch})));
+                                          testing::Values(~uint64_t{0},
+                                                          uint64_t{int64_t{16} * 16 * 16 * kBatch})));
 
 }  // namespace
 }  // namespace vkopple

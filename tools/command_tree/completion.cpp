@@ -10,6 +10,7 @@ namespace {
 
 std::string names_of(const std::vector<CommandInfo>& commands) {
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const CommandInfo& command : commands) names.push_back(command.name);
   return fmt::format("{}", fmt::join(names, " "));
 }

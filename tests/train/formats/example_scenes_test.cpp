@@ -210,9 +210,9 @@ TEST_F(ExampleScenesOf, MoviRefusesWhatDoesNotFit) {
 
 TEST_F(ExampleScenesOf, ClevrTakesOneStringOrManyAndRefusesOtherSizes) {
   records::Example example;
-  std::string masks(11 * 240 * 320, '\0');
+  std::string masks(std::size_t{11} * 240 * 320, '\0');
   masks[3 * 240 * 320 + 125 * 320 + 160] = 1;  // the crop's middle
-  set_bytes(example, "image", {std::string(3 * 240 * 320, '\x33')});
+  set_bytes(example, "image", {std::string(std::size_t{3} * 240 * 320, '\x33')});
   set_bytes(example, "mask", {masks});
   const SceneData scene = first(example, "clevr");
   EXPECT_NEAR(scene.frames[0].image.pixels[5], 0.2, 1e-6);

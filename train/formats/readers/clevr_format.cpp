@@ -59,7 +59,7 @@ SceneData convert(const Example& example, const FeatureNames& names) {
   const auto masks = example.joined(names["mask"], kEntities * kArea);
   SceneData scene;
   // CLEVR's camera has a lens of 35 mm before a sensor 32 mm wide: 350 pixels.
-  scene.fov = 2 * std::atan(kCropHeight / 2 / 350.0);
+  scene.fov = 2 * std::atan(kCropHeight / 2.0 / 350.0);
   scene.frames.push_back({.image = resize(cropped_image(image), kSize, kSize)});
   scene.frames[0].ids = resize_nearest(cropped_labels(masks), kSize, kSize);
   return scene;

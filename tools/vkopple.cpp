@@ -11,6 +11,7 @@
 #include <string>
 
 #include "runtime/error.h"
+#include "runtime/wide_vectors.h"
 #include "tools/commands.h"
 
 namespace {
@@ -68,5 +69,6 @@ int main(int argc, char** argv) {
   // Results go to standard output; what is said about them to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("vkopple"));
   spdlog::set_pattern("vkopple: %l: %v");
+  vkopple::separate_vector_widths();
   return run(argc, argv);
 }

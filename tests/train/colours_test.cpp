@@ -6,39 +6,18 @@
 
 #include <cstdlib>
 #include <memory>
-#include <optional>
-#include <string>
+
+#include "tests/support/variable.h"
 
 namespace vkopple {
 namespace {
+
+using test::Variable;
 
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
 using File = std::unique_ptr<std::FILE, Close>;
-
-/// Sets a variable for as long as it lives; null: takes it away.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    set(value);
-  }
-  ~Variable() { set(before_ ? before_->c_str() : nullptr); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  void set(const char* value) const {
-    if (value == nullptr)
-      ::unsetenv(name_);
-    else
-      ::setenv(name_, value, 1);
-  }
-
-  const char* name_;
-  std::optional<std::string> before_;
-};
 
 /// The side of a new terminal that programs write to, and the other.
 struct Terminal {

@@ -2,6 +2,7 @@
 # Sourced by tools/test-drivers, after fetch.sh: what is run on one driver.
 
 test_shards=6
+cores=$(nproc)
 
 # Runs a command on a driver, with caches of its own, so that nobody's tuned choices count.
 on_driver() { # name, command...
@@ -53,31 +54,77 @@ count_in() { # log, PASSED|SKIPPED|FAILED: gtest's own counts of all processes
   sed -nE "s/^\[  $2  ?\] ([0-9]+) tests?.*/\1/p" "$1" | awk '{ sum += $1 } END { print sum + 0 }'
 }
 
-run_tests() { # name; sets `tests`
-  local log=$logs/tests.log shard filter part died=""
-  filter=$(device_suites | tr -d '\n')
-  # In several processes, since drivers keep what they compiled.
+# Starts a command on a driver as soon as fewer run than there are cores, its output going to $logs/JOB.log and its exit code to
+# $logs/JOB.code. Drivers compile on one thread each, which is most of the work.
+start() { # name, job, command...
+  while (($(jobs -rp | wc -l) >= cores)); do wait -n || true; done
+  { on_driver "$1" "${@:3}" >"$logs/$2.log" 2>&1 && echo 0 >"$logs/$2.code" || echo "$?" >"$logs/$2.code"; } &
+}
+
+succeeded() { # job
+  [[ $(cat "$logs/$1.code") == 0 ]]
+}
+
+# All that is run on one driver. Training once more comes last, when Mesa has kept the kernels, and with one thread of lavapipe in
+# place of as many as there are cores.
+run_jobs() { # name
+  local shard fixture family access filter train
+  train=("$vkopple" train tiny --set 'training.stages=[]' --data rooms:1 --seed 1 --batch "$batch" --steps "$steps"
+    --eval-every "$steps" --checkpoint-every 0 --quiet --out)
+  rm -rf "$drivers/$1"/{run,run-again}
+  # All networks from the first step on, and an evaluation at the end.
+  start "$1" train "${train[@]}" "$drivers/$1/run"
+  local -x LP_NUM_THREADS=1
+  if [[ -z $quick ]]; then
+    filter=$(device_suites | tr -d '\n')
+    # In several processes, since drivers keep what they compiled.
+    for ((shard = 0; shard < test_shards; ++shard)); do
+      start "$1" "tests-$shard" env GTEST_TOTAL_SHARDS=$test_shards GTEST_SHARD_INDEX=$shard "$root/build/$preset/vkopple_tests" --gtest_filter="$filter"
+    done
+    start "$1" gradcheck "$vkopple" gradcheck --all
+  fi
+  for fixture in "${fixtures[@]}"; do
+    start "$1" "verify-$fixture" "$vkopple" verify "tests/fixtures/$fixture.safetensors"
+  done
+  # Every family on every access path, also those that the device would not choose.
+  for family in "${families[@]}"; do
+    for access in texel storage; do
+      for fixture in "${family_fixtures[@]}"; do
+        start "$1" "verify-$fixture-$family-$access" "$vkopple" verify "tests/fixtures/$fixture.safetensors" --kernels "$family" --access "$access"
+      done
+    done
+  done
+  start "$1" train-again "${train[@]}" "$drivers/$1/run-again"
+  wait
+}
+
+judge_tests() { # sets `tests`
+  local log=$logs/tests.log shard part died=""
   for ((shard = 0; shard < test_shards; ++shard)); do
     part=$logs/tests-$shard.log
-    GTEST_TOTAL_SHARDS=$test_shards GTEST_SHARD_INDEX=$shard on_driver "$1" "$root/build/$preset/vkopple_tests" --gtest_filter="$filter" >"$part" 2>&1 ||
-      [[ $broken == *" tests"* ]] || broken+=" tests"
+    succeeded "tests-$shard" || [[ $broken == *" tests"* ]] || broken+=" tests"
     # A test that brings the program down leaves no counts.
     grep -q '^\[  PASSED  \]' "$part" || died+=" $(sed -nE 's/^\[ RUN      \] //p' "$part" | tail -n 1)"
   done
-  cat "$logs"/tests-*.log >"$log"
+  cat "$logs"/tests-?.log >"$log"
   tests="$(count_in "$log" PASSED), $(count_in "$log" SKIPPED), $(count_in "$log" FAILED)"
   [[ -z $died ]] || tests+="; died in$died"
   echo "tests: $tests"
   sed -nE '/^\[  FAILED  \] [^0-9]/p' "$log" | sort -u
   echo "reasons of what was skipped or left out, if anything was:"
-  { grep -hE "can't (run|be had) on|has not what it takes|stores no rows|too much memory" "$log" || true; } | sed -E 's/^.*: Skipped//' |
-    sed -E 's/(has not what it takes): .*/\1/' | sort | uniq -c | sort -rn | head -n 12
+  { skip_reasons "$log"; grep -E '(has not what it takes): ' "$log" || true; } |
+    sed -E 's/(has not what it takes): .*/\1/' | sort | uniq -c | sort -rn
+  [[ $(skip_reasons "$log" | wc -l) == "$(count_in "$log" SKIPPED)" ]] || broken+=" skipped-without-a-reason"
 }
 
-run_fixtures() { # name; sets `verified`
+skip_reasons() { # log
+  awk '/: Skipped$/ { getline; if ($0 != "") print }' "$1"
+}
+
+judge_fixtures() { # sets `verified`
   local fixture right=0
   for fixture in "${fixtures[@]}"; do
-    if on_driver "$1" "$vkopple" verify "tests/fixtures/$fixture.safetensors" >"$logs/verify-$fixture.log" 2>&1; then
+    if succeeded "verify-$fixture"; then
       right=$((right + 1))
     else
       broken+=" $fixture"
@@ -87,17 +134,16 @@ run_fixtures() { # name; sets `verified`
   echo "fixtures: $verified"
 }
 
-# Every family on every access path, also those that the device would not choose. Sets `families`.
-run_families() { # name
-  local family access fixture log right=0 refused=()
-  for family in registers shared plain; do
+judge_families() { # sets `forced`
+  local family access fixture job right=0 refused=()
+  for family in "${families[@]}"; do
     for access in texel storage; do
       for fixture in "${family_fixtures[@]}"; do
-        log=$logs/verify-$fixture-$family-$access.log
-        if on_driver "$1" "$vkopple" verify "tests/fixtures/$fixture.safetensors" --kernels "$family" --access "$access" >"$log" 2>&1; then
+        job=verify-$fixture-$family-$access
+        if succeeded "$job"; then
           right=$((right + 1))
-        elif grep -qE "can't (run|be had) on" "$log"; then
-          echo "$family, $access: $(tail -n 1 "$log")"
+        elif grep -qE "can't (run|be had) on" "$logs/$job.log"; then
+          echo "$family, $access: $(tail -n 1 "$logs/$job.log")"
           refused+=("$family/$access")
           break
         else
@@ -106,22 +152,15 @@ run_families() { # name
       done
     done
   done
-  families="$right runs right"
-  ((${#refused[@]} == 0)) || families+="; refused: ${refused[*]}"
-  echo "families: $families"
+  forced="$right runs right"
+  ((${#refused[@]} == 0)) || forced+="; refused: ${refused[*]}"
+  echo "families: $forced"
 }
 
-run_gradcheck() { # name; sets `gradients`
+judge_gradcheck() { # sets `gradients`
   gradients=right
-  on_driver "$1" "$vkopple" gradcheck --all >"$logs/gradcheck.log" 2>&1 || { gradients=WRONG; broken+=" gradcheck"; }
+  succeeded gradcheck || { gradients=WRONG; broken+=" gradcheck"; }
   echo "gradcheck: $gradients"
-}
-
-# All networks from the first step on, and an evaluation at the end.
-train_once() { # name, run's folder
-  rm -rf "$2"
-  on_driver "$1" "$vkopple" train tiny --set 'training.stages=[]' --data rooms:1 --seed 1 --steps "$steps" --eval-every "$steps" \
-    --checkpoint-every 0 --quiet --out "$2" >"$2.log" 2>&1
 }
 
 losses() { # run's folder: the total loss of every step
@@ -136,12 +175,12 @@ differences() { # two runs' folders
     END { printf "%.1e %.1e %.1e\n", first, size((a - b) / b), most }'
 }
 
-# Two runs, the second with another number of lavapipe's threads; sets `loss` and `bytes`, and `yardstick` by the first driver.
-run_training() { # name
+# Two runs of the same; sets `loss` and `bytes`, and `yardstick` by the first driver.
+judge_training() { # name
   local run=$drivers/$1/run again=$drivers/$1/run-again first mean most
   loss=none
   bytes=none
-  if ! train_once "$1" "$run" || [[ $(losses "$run" | wc -l) != "$steps" ]]; then
+  if ! succeeded train || [[ $(losses "$run" | wc -l) != "$steps" ]]; then
     broken+=" training"
     return 0
   fi
@@ -154,7 +193,7 @@ run_training() { # name
     loss+=", from $yardstick $first, $mean, $most"
     awk "BEGIN { exit !($first <= $first_bound && $mean <= $mean_bound) }" || broken+=" loss"
   fi
-  if LP_NUM_THREADS=1 train_once "$1" "$again" && cmp -s "$run/latest.safetensors" "$again/latest.safetensors" &&
+  if succeeded train-again && cmp -s "$run/latest.safetensors" "$again/latest.safetensors" &&
     [[ $(times_aside "$run") == "$(times_aside "$again")" ]]; then
     bytes=yes
   else
@@ -170,18 +209,20 @@ times_aside() { # run's folder: its log, evaluation included
 
 # Everything on one driver. Sets `row`, a line of the table, and `broken`, what failed.
 test_driver() { # name
-  local start=$SECONDS logs=$drivers/$1/logs tests="left out" gradients="left out" verified families loss bytes version time
+  local start=$SECONDS logs=$drivers/$1/logs tests="left out" gradients="left out" verified forced loss bytes version time
   broken=""
+  rm -rf "$logs"
   mkdir -p "$logs"
   version=$(cat "$drivers/$1/version" 2>/dev/null || true)
-  run_training "$1"
-  run_fixtures "$1"
-  run_families "$1"
+  run_jobs "$1"
+  judge_training "$1"
+  judge_fixtures
+  judge_families
   if [[ -z $quick ]]; then
-    run_gradcheck "$1"
-    run_tests "$1"
+    judge_gradcheck
+    judge_tests
   fi
   time=$(printf '%d:%02d' $(((SECONDS - start) / 60)) $(((SECONDS - start) % 60)))
-  row="| $1 | $(device_field "$1" driver)${version:+, package $version} | $(device_field "$1" name) | $tests | $verified | $families | $gradients | $loss | $bytes | $time |"
+  row="| $1 | $(device_field "$1" driver)${version:+, package $version} | $(device_field "$1" name) | $tests | $verified | $forced | $gradients | $loss | $bytes | $time |"
   [[ -z $broken ]] || echo "FAILED:$broken"
 }

@@ -35,14 +35,16 @@ TrainingStage read_stage(JsonObject object, const StageDefaults& defaults) {
   if (steps > 0) s.steps = steps;
   object.number("learning_rate", s.learning_rate, kSmallestRate, 1);
   object.integer("warmup", s.warmup, 0, 1'000'000'000);
-  double final_rate = 0;
-  object.number("final_learning_rate", final_rate, 0, 1);
-  if (object.has("final_learning_rate")) s.final_learning_rate = final_rate;
+  const auto optional = [&](const char* key, std::optional<double>& value, double most) {
+    double given = 0;
+    object.number(key, given, 0, most);
+    if (object.has(key)) value = given;
+  };
+  optional("final_learning_rate", s.final_learning_rate, 1);
   if (s.final_learning_rate && !s.steps)
     object.refuse("final_learning_rate", "needs the stage's steps, at whose end it is reached; give them");
-  double reg = 0;
-  object.number("reg", reg, 0, 1e6);
-  if (object.has("reg")) s.reg = reg;
+  optional("reg", s.reg, 1e6);
+  optional("slot_contrast", s.slot_contrast, 1000);
   int slots = 0;
   object.integer("slots", slots, 1, kMostSlots);
   if (slots > 0) s.slots = slots;
@@ -71,6 +73,7 @@ nlohmann::ordered_json write_stage(const TrainingStage& s, int accumulate, const
   if (s.warmup > 0) result["warmup"] = s.warmup;
   if (s.final_learning_rate) result["final_learning_rate"] = *s.final_learning_rate;
   if (s.reg) result["reg"] = *s.reg;
+  if (s.slot_contrast) result["slot_contrast"] = *s.slot_contrast;
   if (s.slots) result["slots"] = *s.slots;
   result["batch"] = s.batch;
   if (s.accumulate != accumulate) result["accumulate"] = s.accumulate;
@@ -107,6 +110,7 @@ bool TrainingStage::learns(Network network) const {
 
 ModelConfig TrainingStage::model_in(ModelConfig model) const {
   model.reg = reg.value_or(model.reg);
+  model.slot_contrast = slot_contrast.value_or(model.slot_contrast);
   model.slots = slots.value_or(model.slots);
   return model;
 }

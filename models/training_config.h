@@ -37,8 +37,9 @@ struct TrainingStage {
   std::int64_t warmup = 0;  ///< steps over which the learning rate grows evenly from 0
   /// To which the learning rate falls, along half a cosine over the stage's steps; absent: it stays.
   std::optional<double> final_learning_rate;
-  std::optional<double> reg;  ///< in place of ModelConfig::reg
-  std::optional<int> slots;   ///< in place of ModelConfig::slots, whose weights do not depend on their number
+  std::optional<double> reg;            ///< in place of ModelConfig::reg
+  std::optional<double> slot_contrast;  ///< in place of ModelConfig::slot_contrast
+  std::optional<int> slots;  ///< in place of ModelConfig::slots, whose weights do not depend on their number
   int batch = 20;
   int accumulate = 1;  ///< portions of equal length in which the batch is worked off; see TrainingConfig
   RoomsConfig rooms;

@@ -324,12 +324,13 @@ TEST(Config, OverridesThatAreNoneAreWrongUse) {
 TEST(Config, StagesHaveSchedulesAndWeightsOfTheirOwn) {
   const Config c = Config::parse(R"({"training": {"stages": [
     {"name": "a", "steps": 100, "learning_rate": 0.5, "warmup": 10, "final_learning_rate": 0.1, "reg": 0.25,
-     "slots": 2},
+     "slot_contrast": 3, "slots": 2},
     {"name": "b", "learning_rate": 0.25}]}})",
                                  "x");
   const TrainingStage a = c.stages()[0];
   EXPECT_EQ(a.reg, 0.25);
   EXPECT_EQ(a.model_in(c.model).reg, 0.25);
+  EXPECT_EQ(a.model_in(c.model).slot_contrast, 3);
   EXPECT_EQ(a.model_in(c.model).slots, 2);
   EXPECT_NEAR(a.learning_rate_at(0), 0.05, 1e-12);
   EXPECT_NEAR(a.learning_rate_at(4), 0.5 * (0.1 + 0.4 * (1 + std::cos(std::numbers::pi * 0.04)) / 2), 1e-12);

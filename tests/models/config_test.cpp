@@ -39,8 +39,9 @@ TEST(Config, DefaultsAreThePublishedModel) {
 }
 
 TEST(Config, EveryPresetRoundTripsExactly) {
-  EXPECT_EQ(preset_names(), (std::vector<std::string_view>{"full", "more-terms", "no-regularisers", "no-warp",
-                                                           "relaxed", "rotation-3d", "small", "tiny"}));
+  EXPECT_EQ(preset_names(),
+            (std::vector<std::string_view>{"full", "more-terms", "no-regularisers", "no-warp", "relaxed",
+                                           "rooms-small", "rotation-3d", "small", "tiny"}));
   for (const std::string_view name : preset_names()) {
     const Config c = Config::load(std::string(name));
     EXPECT_EQ(Config::parse(c.to_json(), "again"), c) << c.to_json();
@@ -52,6 +53,17 @@ TEST(Config, StatisticsOfTheSecondFrameAloneAreAChoice) {
   EXPECT_EQ(Config::load("full").model.statistics_frames, StatisticsFrames::kAll);
   for (const char* preset : {"small", "tiny"})
     EXPECT_EQ(Config::load(preset).model.statistics_frames, StatisticsFrames::kSecond) << preset;
+}
+
+// docs/results.md: depth, then objects that keep to their parts of the view, then objects anywhere.
+TEST(Config, TheRecipeOfRoomsTakesAtMostAMillionTriplets) {
+  const Config c = Config::load("rooms-small");
+  ASSERT_EQ(c.stages().size(), 3U);
+  int64_t triplets = 0;
+  for (const TrainingStage& stage : c.stages()) triplets += stage.steps.value() * stage.batch;
+  EXPECT_LE(triplets, 1'000'000);
+  EXPECT_TRUE(c.stages()[1].rooms.sectors);
+  EXPECT_EQ(c.stages()[2].rooms, c.rooms);  // those in which `eval` scores it
 }
 
 TEST(Config, UnroundNumbersRoundTrip) {
@@ -149,8 +161,7 @@ TEST(Config, ABaseIsFilledIn) {
   EXPECT_EQ(Config::parse(R"({"base": "relaxed", "model": {"relaxed": false}})", "x"), Config::load("small"));
   EXPECT_EQ(refusal(R"({"base": "larger"})"),
             "run.json: base is \"larger\"; give a preset, one of full, more-terms, no-regularisers, no-warp, "
-            "relaxed, "
-            "rotation-3d, small, tiny");
+            "relaxed, rooms-small, rotation-3d, small, tiny");
   EXPECT_NE(refusal(R"({"base": 3})").find("base is 3"), std::string::npos);
   EXPECT_NE(refusal(R"({"base": "small", "model": 3})").find("model is 3"), std::string::npos);
 }
@@ -252,7 +263,7 @@ TEST(Config, LoadTellsPresetsFromFiles) {
     EXPECT_STREQ(
         error.what(),
         "smal: no such file, nor a preset; the presets are full, more-terms, no-regularisers, no-warp, "
-        "relaxed, rotation-3d, small, tiny");
+        "relaxed, rooms-small, rotation-3d, small, tiny");
   }
   const std::string path = testing::TempDir() + "vkopple_config_test.json";
   std::ofstream(path) << R"({"model": {"height": 48}})";

@@ -27,6 +27,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.number("max_depth", c.max_depth, 0.01, 10000);
   object.number("max_height", c.max_height, 0.01, 10000);
   object.number("beta", c.beta, 0, 1000);
+  object.number("mask_window", c.mask_window, 0, 10000);
   object.number("reg", c.reg, 0, 1000);
   object.number("smoothness", c.smoothness, 0, 1000);
   object.number("pose_contrast", c.pose_contrast, 0, 1000);
@@ -74,6 +75,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"max_depth", c.max_depth},
           {"max_height", c.max_height},
           {"beta", c.beta},
+          {"mask_window", c.mask_window},
           {"reg", c.reg},
           {"smoothness", c.smoothness},
           {"pose_contrast", c.pose_contrast},

@@ -1,6 +1,7 @@
 #include "models/object_state.h"
 
 #include "graph/ops/align.h"
+#include "graph/ops/back_project.h"
 #include "graph/ops/binary.h"
 #include "graph/ops/decode_location.h"
 #include "graph/ops/euler_rotation.h"
@@ -9,10 +10,11 @@
 #include "graph/ops/slice.h"
 #include "graph/ops/slot_masks.h"
 #include "graph/ops/softmax.h"
+#include "models/mask_window.h"
 
 namespace vkopple {
 
-ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits) {
+ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits, Value depth) {
   ObjectState state;
   state.location = decode_location(raw, static_cast<float>(config.fov), static_cast<float>(config.max_depth),
                                    static_cast<float>(config.max_height));
@@ -23,8 +25,13 @@ ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits
   else
     state.rotation = euler_rotation(orientation);
   state.code = slice(raw, 2, 3 + numbers, config.code);
+  if (!mask_logits) return state;
   state.mask_logits = mask_logits;
-  if (mask_logits) state.masks = slot_masks(mask_logits);
+  if (config.mask_window > 0) {
+    const Value points = back_project(depth, static_cast<float>(config.fov));
+    state.mask_logits = mask_window(mask_logits, points, state.location, config.mask_window);
+  }
+  state.masks = slot_masks(state.mask_logits);
   return state;
 }
 

@@ -15,8 +15,9 @@ struct ObjectState {
   Value masks;        ///< (B, K+1, H, W), background last; likewise
 };
 
-/// raw: (B, K, 3 + orientation + code); mask_logits: (K, B, H, W), or empty.
-ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits);
+/// raw: (B, K, 3 + orientation + code); mask_logits: (K, B, H, W), or empty; depth: (B, 1, H, W), which
+/// `mask_window` asks for where there are masks.
+ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits, Value depth);
 
 /// How the objects of frame b are those of frame a (§3).
 struct Matching {

@@ -93,32 +93,32 @@ std::vector<bool> Opple::seen_fully() const {
   return {all, true, all};
 }
 
-/// Frame 2's depth. The other frames pass the network for their part in its running averages alone, in calls of
-/// their own, so that backward leaves them out.
-Value Opple::see_depth(Value images4) {
+/// The frames' depths, empty where a frame doesn't pass the network. Losses read frame 2's; the others pass it
+/// for their part in its running averages alone, in calls of their own, so that backward leaves them out.
+std::vector<Value> Opple::see_depth(Value images4) {
   const int64_t b = options_.batch;
   const auto frames = seen_fully();
-  Value depth;
+  std::vector<Value> depths(kFrames);
   for (int64_t f = 0; f < kFrames; ++f) {
-    if (!frames[static_cast<size_t>(f)]) continue;
-    const Value seen = depth_net(factory("depth"), config_, take_outer(images4, f * b, b));
-    if (f == 1) depth = seen;
+    const auto frame = static_cast<size_t>(f);
+    if (frames[frame]) depths[frame] = depth_net(factory("depth"), config_, take_outer(images4, f * b, b));
   }
-  return depth;
+  return depths;
 }
 
-std::vector<ObjectState> Opple::see_objects(Value images4) {
+std::vector<ObjectState> Opple::see_objects(Value images4, const std::vector<Value>& depths) {
   std::vector<ObjectState> states;
   for (const ObjectOutputs& out : object_net(factory("object"), config_, images4, seen_fully()))
-    states.push_back(object_state(config_, out.raw, out.mask_logits));
+    states.push_back(object_state(config_, out.raw, out.mask_logits, depths[states.size()]));
   return states;
 }
 
 void Opple::build_all() {
   const float fov = as_float(config_.fov);
   const Value images4 = to_channels4(images_);
-  const Value depth = see_depth(images4);
-  const auto o = see_objects(images4);
+  const auto depths = see_depth(images4);
+  const Value depth = depths[1];
+  const auto o = see_objects(images4, depths);
   LayerFactory* const learned = config_.relaxed ? &factory("motion") : nullptr;
   const ObjectMotion motion = object_motion(config_, o[0], o[1], camera_, learned);
 

@@ -66,8 +66,8 @@ class Opple {
   void build_background_only();
   void build_all();
   std::vector<bool> seen_fully() const;
-  Value see_depth(Value images4);
-  std::vector<ObjectState> see_objects(Value images4);
+  std::vector<Value> see_depth(Value images4);
+  std::vector<ObjectState> see_objects(Value images4, const std::vector<Value>& depths);
   void imagine(const ObjectState& o2, Value depth, const ObjectMotion& motion);
   void add_losses(const std::vector<ObjectState>& o, const ObjectMotion& motion, Value points2);
   void keep(const std::string& name, Value value);

@@ -23,7 +23,7 @@ PerceptionGraph perception_graph(Graph& graph, const ModelConfig& config, int64_
   LayerFactory layers(graph, network_options(config, "object", false, {}, max_tensor_bytes));
   const ObjectOutputs out = object_net(layers, config, images4, {true}).front();
   use(layers);
-  made.objects = object_state(config, out.raw, out.mask_logits);
+  made.objects = object_state(config, out.raw, out.mask_logits, made.depth);
   graph.keep("masks", made.objects.masks);
   graph.keep("location", made.objects.location);
   if (made.objects.log_pose) graph.keep("log_pose", made.objects.log_pose);

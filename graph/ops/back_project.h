@@ -12,6 +12,7 @@ class BackProject : public Op {
   /// fov: vertical field of view in radians, below π.
   explicit BackProject(float fov) : fov_(fov) {}
   std::string_view name() const override { return "back_project"; }
+  float fov() const { return fov_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

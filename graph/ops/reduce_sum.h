@@ -10,6 +10,7 @@ class ReduceSum : public Op {
  public:
   explicit ReduceSum(std::vector<size_t> axes) : axes_(std::move(axes)) {}
   std::string_view name() const override { return "reduce_sum"; }
+  const std::vector<size_t>& axes() const { return axes_; }
   std::vector<TensorSpec> infer(std::span<const TensorSpec> x) const override;
   Needs needs(std::span<const TensorSpec> x, const Caps& caps) const override;
   void record_forward(Recorder& recorder, const Forward& io) const override;

@@ -30,6 +30,7 @@ class Config:
     max_depth: float = 7.2
     max_height: float = 5.0
     beta: float = 1.0
+    mask_window: float = 0.0   # how far masks reach around their slot's location; 0: anywhere
     reg: float = 1.0
     smoothness: float = 0.0    # factors of two more terms
     pose_contrast: float = 0.0
@@ -446,20 +447,23 @@ class Opple(nn.Module):
     def perceive(self, image):
         """What one image shows: dict of depth, masks, location, log_pose, code."""
         depth = self.cfg.max_depth * torch.sigmoid(self.depth_net(image)[:, 0])
-        return {"depth": depth, **self.objects(image)}
+        return {"depth": depth, **self.objects(image, depth=depth)}
 
-    def objects(self, image, masks=True):
+    def objects(self, image, masks=True, depth=None):
         raw, logits = self.object_net(image, masks)
         state = decode(self.cfg, raw)
+        if masks and self.cfg.mask_window > 0:
+            away = back_project(self.cfg, depth)[:, None] - state["location"][..., None, None]
+            logits = logits - away.square().sum(2) / (2 * self.cfg.mask_window ** 2)
         return dict(state, masks=F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1), mask_logits=logits) if masks else state
 
     def forward(self, images, poses):
         """images 3 x (B, 3, H, W) in [0, 1]; poses 3 x (B, 6) -> dict of every named stage"""
         cfg = self.cfg
         seen = [frame == 1 or cfg.statistics_frames == "all" for frame in range(3)]     # for batch norm's averages
-        for_depth = [self.depth_net(image) if s else None for image, s in zip(images, seen)]
-        depth = cfg.max_depth * torch.sigmoid(for_depth[1][:, 0])
-        o1, o2, o3 = (self.objects(image, s) for image, s in zip(images, seen))
+        depths = [cfg.max_depth * torch.sigmoid(self.depth_net(image)[:, 0]) if s else None for image, s in zip(images, seen)]
+        depth = depths[1]
+        o1, o2, o3 = (self.objects(*frame) for frame in zip(images, seen, depths))
         m12, m23 = relative(poses[0], poses[1]), relative(poses[1], poses[2])
         ego12, ego23 = ego_motion(poses[0], poses[1]), ego_motion(poses[1], poses[2])
 

@@ -203,6 +203,14 @@ TEST(OnnxExport, TheBackgroundsLogitsAreOneNumber) {
   EXPECT_EQ(ints(constant(model.graph(), background.input(1))), (Ints{2, 1, 16, 16}));
 }
 
+TEST(OnnxExport, TakesTheDistanceOfWindowsFromDepth) {
+  ModelWeights weights = test::drawn_weights();
+  const auto sums = [&] { return inspect(exported(weights).graph()).kinds["ReduceSum"]; };
+  EXPECT_EQ(sums(), 0);
+  weights.header.config.model.mask_window = 0.7;
+  EXPECT_EQ(sums(), 1);
+}
+
 TEST(OnnxExport, RefusesRotationInSpace) {
   ModelWeights weights = test::drawn_weights();
   weights.header.config.model.orientation = Orientation::kEuler;

@@ -1,7 +1,13 @@
+#include <cmath>
+
+#include "graph/kernels/camera.h"
 #include "graph/ops/add_repeated.h"
+#include "graph/ops/affine.h"
+#include "graph/ops/back_project.h"
 #include "graph/ops/binary.h"
 #include "graph/ops/decode_location.h"
 #include "graph/ops/leaky_relu.h"
+#include "graph/ops/reduce_sum.h"
 #include "graph/ops/sigmoid.h"
 #include "graph/ops/softmax.h"
 #include "train/exchange/onnx/onnx_translators.h"
@@ -24,6 +30,18 @@ void softmax_to_onnx(OnnxGraph& onnx, const Node& node) {
   const auto axis = static_cast<std::int64_t>(op.axis());
   onnx.define(node.outputs[0],
               onnx.add(op.log() ? "LogSoftmax" : "Softmax", inputs_of(onnx, node), {{"axis", axis}}));
+}
+
+void affine_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const auto& op = op_of<Affine>(node);
+  onnx.define(node.outputs[0], onnx.affine(onnx.tensor(node.inputs[0]), op.scale(), op.offset()));
+}
+
+void reduce_sum_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const auto& op = op_of<ReduceSum>(node);
+  const std::vector<std::int64_t> axes(op.axes().begin(), op.axes().end());
+  onnx.define(node.outputs[0], onnx.add("ReduceSum", {onnx.tensor(node.inputs[0]), onnx.ints(axes)},
+                                        {{"keepdims", std::int64_t{0}}}));
 }
 
 void binary_to_onnx(OnnxGraph& onnx, const Node& node) {
@@ -68,6 +86,27 @@ void decode_location_to_onnx(OnnxGraph& onnx, const Node& node) {
   const std::string x = onnx.add("Mul", {distance, onnx.add("Sin", {angle})});
   const std::string y = onnx.add("Mul", {distance, onnx.add("Cos", {angle})});
   onnx.define(node.outputs[0], onnx.add("Concat", {x, y, z}, {{"axis", std::int64_t{2}}}));
+}
+
+/// docs/model.md §1: a pixel's depth times its unit ray, a constant here.
+void back_project_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const Shape& points = onnx.shape(node.outputs[0]);
+  const std::int64_t height = points[2], width = points[3];
+  const auto pixels = static_cast<std::size_t>(height * width);
+  const double focal = focal_length(height, op_of<BackProject>(node).fov());
+  std::vector<float> rays(3 * pixels);
+  for (std::int64_t row = 0; row < height; ++row)
+    for (std::int64_t column = 0; column < width; ++column) {
+      const double right = (static_cast<double>(column) - 0.5 * static_cast<double>(width - 1)) / focal;
+      const double up = (0.5 * static_cast<double>(height - 1) - static_cast<double>(row)) / focal;
+      const double length = std::sqrt(1 + right * right + up * up);
+      const auto at = static_cast<std::size_t>(row * width + column);
+      rays[at] = static_cast<float>(right / length);
+      rays[at + pixels] = static_cast<float>(1 / length);
+      rays[at + 2 * pixels] = static_cast<float>(up / length);
+    }
+  const std::string constant = onnx.floats({1, 3, height, width}, rays);
+  onnx.define(node.outputs[0], onnx.add("Mul", {onnx.tensor(node.inputs[0]), constant}));
 }
 
 }  // namespace vkopple

@@ -7,9 +7,11 @@
 namespace vkopple {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 19> kTranslators{
+constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 22> kTranslators{
     {{"adaptive_avg_pool", adaptive_avg_pool_to_onnx},
      {"add_repeated", add_repeated_to_onnx},
+     {"affine", affine_to_onnx},
+     {"back_project", back_project_to_onnx},
      {"batch_norm", batch_norm_to_onnx},
      {"binary", binary_to_onnx},
      {"concat", concat_to_onnx},
@@ -21,6 +23,7 @@ constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 19> kTranslato
      {"linear", linear_to_onnx},
      {"lstm", lstm_to_onnx},
      {"permute", permute_to_onnx},
+     {"reduce_sum", reduce_sum_to_onnx},
      {"relayout", relayout_to_onnx},
      {"resize_bilinear", resize_bilinear_to_onnx},
      {"sigmoid", sigmoid_to_onnx},

@@ -25,10 +25,13 @@ void resize_bilinear_to_onnx(OnnxGraph& onnx, const Node& node);
 void leaky_relu_to_onnx(OnnxGraph& onnx, const Node& node);
 void sigmoid_to_onnx(OnnxGraph& onnx, const Node& node);
 void softmax_to_onnx(OnnxGraph& onnx, const Node& node);
+void affine_to_onnx(OnnxGraph& onnx, const Node& node);
 void binary_to_onnx(OnnxGraph& onnx, const Node& node);
+void reduce_sum_to_onnx(OnnxGraph& onnx, const Node& node);
 void add_repeated_to_onnx(OnnxGraph& onnx, const Node& node);
 void slot_masks_to_onnx(OnnxGraph& onnx, const Node& node);
 void decode_location_to_onnx(OnnxGraph& onnx, const Node& node);
+void back_project_to_onnx(OnnxGraph& onnx, const Node& node);
 // onnx_shapes.cpp
 void relayout_to_onnx(OnnxGraph& onnx, const Node& node);
 void concat_to_onnx(OnnxGraph& onnx, const Node& node);

@@ -55,9 +55,10 @@ struct ModelConfig {
       0;  ///< hidden units of the LSTM that count its steps from the start; see models/slot_counters.h
   double max_depth = 7.2;
   double max_height = 5.0;
-  double beta = 1.0;         ///< how fast the splat's weight falls with distance
-  double mask_window = 0;    ///< how far masks reach around their slot's location; 0: anywhere
-  double reg = 1.0;          ///< factor of the regularising losses
+  double beta = 1.0;  ///< how fast the splat's weight falls with distance
+  double mask_window =
+      0;             ///< radius r within which masks stay around their slot's location, scene units; 0: none
+  double reg = 1.0;  ///< factor of the regularising losses
   double smoothness = 0;     ///< of the masks' spatial smoothness among them
   double pose_contrast = 0;  ///< of the contrast of poses among them; of yaw alone
   double slot_contrast = 0;  ///< of the contrast of the slots' places among them

@@ -6,6 +6,7 @@
 
 #include "models/opple.h"
 #include "runtime/error.h"
+#include "tests/support/fed_model.h"
 #include "tests/support/test_device.h"
 #include "tests/support/tiny_model.h"
 
@@ -40,11 +41,7 @@ double apart(MaskStatistics statistics) {
   Graph graph;
   const Opple model(graph, config, {.batch = kBatch, .training = true, .keep_stages = true});
   Executor executor(test_device(), graph, {.loss = model.loss(), .trained = model.groups()});
-  for (const InitialTensor& t : model.tensors())
-    executor.write(t.value, initial_values(t.initial, t.value.shape().elements(), 3, t.name));
-  model.feed_constants(executor);
-  model.feed_random(executor, 1, 1);
-  model.feed(executor, one_image(config));
+  test::feed_drawn(executor, model, one_image(config));
   executor.forward();
   const auto logits = executor.read(Value(graph, graph.kept().at("out/o2.mask_logits")));
   const size_t slot = static_cast<size_t>(kBatch * config.height * config.width);

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "models/opple.h"
+#include "tests/support/fed_model.h"
 #include "tests/support/test_device.h"
 #include "tests/support/tiny_model.h"
 
@@ -24,10 +25,6 @@ Tensors step(uint64_t recompute_from, bool in_place) {
                      .trained = model.groups(),
                      .recompute_from = recompute_from,
                      .in_place = in_place});
-  for (const InitialTensor& t : model.tensors())
-    executor.write(t.value, initial_values(t.initial, t.value.shape().elements(), 3, t.name));
-  model.feed_constants(executor);
-  model.feed_random(executor, 1, 1);
   std::mt19937 random(7);
   Triplets triplets;
   for (int64_t i = 0; i < 3 * kBatch * 3 * config.height * config.width; ++i)
@@ -36,7 +33,7 @@ Tensors step(uint64_t recompute_from, bool in_place) {
     for (int64_t b = 0; b < kBatch; ++b)
       triplets.poses.push_back({0.05 * frame, 0.02 * frame, 0.7, 0.03 * frame, 0, 0});
   triplets.permutation = {1, 0};
-  model.feed(executor, triplets);
+  test::feed_drawn(executor, model, triplets);
   executor.forward();
   executor.backward();
   Tensors tensors;

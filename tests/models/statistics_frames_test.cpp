@@ -5,6 +5,7 @@
 #include <random>
 
 #include "models/opple.h"
+#include "tests/support/fed_model.h"
 #include "tests/support/test_device.h"
 #include "tests/support/tiny_model.h"
 
@@ -43,11 +44,7 @@ Pass run(StatisticsFrames frames, bool training, uint64_t max_tensor_bytes) {
       graph, config,
       {.batch = kBatch, .training = training, .keep_stages = true, .max_tensor_bytes = max_tensor_bytes});
   Executor executor(test_device(), graph, {.loss = model.loss(), .trained = model.groups()});
-  for (const InitialTensor& t : model.tensors())
-    executor.write(t.value, initial_values(t.initial, t.value.shape().elements(), 3, t.name));
-  model.feed_constants(executor);
-  model.feed_random(executor, 1, 1);
-  model.feed(executor, random_triplets(config));
+  test::feed_drawn(executor, model, random_triplets(config));
   executor.forward();
   executor.backward();
   Pass pass;

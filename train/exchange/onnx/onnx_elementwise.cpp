@@ -94,11 +94,12 @@ void back_project_to_onnx(OnnxGraph& onnx, const Node& node) {
   const std::int64_t height = points[2], width = points[3];
   const auto pixels = static_cast<std::size_t>(height * width);
   const double focal = focal_length(height, op_of<BackProject>(node).fov());
+  const auto centre_x = static_cast<double>(centre(width)), centre_y = static_cast<double>(centre(height));
   std::vector<float> rays(3 * pixels);
   for (std::int64_t row = 0; row < height; ++row)
     for (std::int64_t column = 0; column < width; ++column) {
-      const double right = (static_cast<double>(column) - 0.5 * static_cast<double>(width - 1)) / focal;
-      const double up = (0.5 * static_cast<double>(height - 1) - static_cast<double>(row)) / focal;
+      const double right = (static_cast<double>(column) - centre_x) / focal;
+      const double up = (centre_y - static_cast<double>(row)) / focal;
       const double length = std::sqrt(1 + right * right + up * up);
       const auto at = static_cast<std::size_t>(row * width + column);
       rays[at] = static_cast<float>(right / length);

@@ -137,6 +137,11 @@ std::vector<CheckedModel> checked_models() {
   add("statistics of all", [](ModelConfig&) {});
   add("statistics of second", [](ModelConfig& c) { c.statistics_frames = StatisticsFrames::kSecond; });
   add("masks within a window", [](ModelConfig& c) { c.mask_window = 0.8; });
+  add("locations of masks", [](ModelConfig& c) {
+    c.mask_location = true;
+    c.mask_window = 0.8;
+    c.statistics_frames = StatisticsFrames::kSecond;
+  });
   add("relaxed", [](ModelConfig& c) { c.relaxed = true; });
   add("euler", [](ModelConfig& c) { c.orientation = Orientation::kEuler; });
   add("no warp, js, more terms", [](ModelConfig& c) {

@@ -28,6 +28,7 @@ ModelConfig read_model_config(JsonObject object) {
   object.number("max_height", c.max_height, 0.01, 10000);
   object.number("beta", c.beta, 0, 1000);
   object.number("mask_window", c.mask_window, 0, 10000);
+  object.boolean("mask_location", c.mask_location);
   object.number("reg", c.reg, 0, 1000);
   object.number("smoothness", c.smoothness, 0, 1000);
   object.number("pose_contrast", c.pose_contrast, 0, 1000);
@@ -76,6 +77,7 @@ nlohmann::ordered_json write_model_config(const ModelConfig& c) {
           {"max_height", c.max_height},
           {"beta", c.beta},
           {"mask_window", c.mask_window},
+          {"mask_location", c.mask_location},
           {"reg", c.reg},
           {"smoothness", c.smoothness},
           {"pose_contrast", c.pose_contrast},

@@ -57,13 +57,14 @@ struct ModelConfig {
   double max_height = 5.0;
   double beta = 1.0;  ///< how fast the splat's weight falls with distance
   double mask_window =
-      0;             ///< radius r within which masks stay around their slot's location, scene units; 0: none
-  double reg = 1.0;  ///< factor of the regularising losses
-  double smoothness = 0;     ///< of the masks' spatial smoothness among them
-  double pose_contrast = 0;  ///< of the contrast of poses among them; of yaw alone
-  double slot_contrast = 0;  ///< of the contrast of the slots' places among them
-  bool warp = true;          ///< false: only the imagined image is used (an ablation)
-  bool relaxed = false;      ///< true: learned motion; of yaw alone
+      0;  ///< radius r within which masks stay around their slot's location, scene units; 0: none
+  bool mask_location = false;  ///< true: an object is at its mask's centroid, and moves as that does
+  double reg = 1.0;            ///< factor of the regularising losses
+  double smoothness = 0;       ///< of the masks' spatial smoothness among them
+  double pose_contrast = 0;    ///< of the contrast of poses among them; of yaw alone
+  double slot_contrast = 0;    ///< of the contrast of the slots' places among them
+  bool warp = true;            ///< false: only the imagined image is used (an ablation)
+  bool relaxed = false;        ///< true: learned motion; of yaw alone
   Orientation orientation = Orientation::kYaw;
   PoseLossKind pose_loss = PoseLossKind::kKl;
   StatisticsFrames statistics_frames = StatisticsFrames::kAll;

@@ -64,8 +64,8 @@ ObjectMotion object_motion(const ModelConfig& config, const ObjectState& o1, con
   const auto carried = [&](Value m, Value ego, Value location) {
     return learned != nullptr ? learned_location(*learned, ego, location) : transform_points(m, location);
   };
-  motion.velocity = mul(sub(o2.location, carried(camera.m12, camera.slots_ego12, seen1.location)), q);
-  motion.predicted.location = carried(camera.m23, camera.slots_ego23, add(o2.location, motion.velocity));
+  motion.velocity = mul(sub(o2.place(), carried(camera.m12, camera.slots_ego12, seen1.location)), q);
+  motion.predicted.location = carried(camera.m23, camera.slots_ego23, add(o2.place(), motion.velocity));
   if (config.orientation == Orientation::kYaw)
     turn_in_the_plane(motion, seen1.log_pose, o2.log_pose, camera);
   else
@@ -77,10 +77,10 @@ Value moved_pixels(const ObjectState& o2, const ObjectMotion& motion, const Came
                    LayerFactory* learned, Value points) {
   if (learned == nullptr) {
     const Value turns = motion.turn ? motion.turn : motion.omega;
-    return move_pixels(points, o2.location, motion.velocity, turns, camera.m23);
+    return move_pixels(points, o2.place(), motion.velocity, turns, camera.m23);
   }
-  const Value objects = concat(
-      {camera.slots_ego23, o2.location, motion.predicted.location, motion.velocity, motion.direction}, 2);
+  const Value objects =
+      concat({camera.slots_ego23, o2.place(), motion.predicted.location, motion.velocity, motion.direction}, 2);
   return learned_pixels(*learned, objects, camera.still, points);
 }
 

@@ -5,6 +5,7 @@
 #include "graph/ops/binary.h"
 #include "graph/ops/decode_location.h"
 #include "graph/ops/euler_rotation.h"
+#include "graph/ops/mask_centroid.h"
 #include "graph/ops/match.h"
 #include "graph/ops/reduce_sum.h"
 #include "graph/ops/slice.h"
@@ -27,11 +28,13 @@ ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits
   state.code = slice(raw, 2, 3 + numbers, config.code);
   if (!mask_logits) return state;
   state.mask_logits = mask_logits;
-  if (config.mask_window > 0) {
-    const Value points = back_project(depth, static_cast<float>(config.fov));
+  Value points;
+  if (config.mask_window > 0 || config.mask_location)
+    points = back_project(depth, static_cast<float>(config.fov));
+  if (config.mask_window > 0)
     state.mask_logits = mask_window(mask_logits, points, state.location, config.mask_window);
-  }
   state.masks = slot_masks(state.mask_logits);
+  if (config.mask_location) state.centroid = mask_centroid(state.masks, points);
   return state;
 }
 
@@ -43,7 +46,7 @@ Matching match_objects(const ModelConfig& config, const ObjectState& a, const Ob
 ObjectState in_order_of(const Matching& matching, const ObjectState& a) {
   ObjectState ordered;
   if (a.log_pose) {
-    const auto aligned = align(matching.log_w, a.location, a.log_pose);
+    const auto aligned = align(matching.log_w, a.place(), a.log_pose);
     ordered.location = aligned[0];
     ordered.log_pose = aligned[1];
     return ordered;
@@ -57,7 +60,7 @@ ObjectState in_order_of(const Matching& matching, const ObjectState& a) {
     const Value parts = mul(w, graph.reshape(x, row_major({s[0], 1, s[1], s.product(2, s.rank())})));
     return graph.reshape(reduce_sum(parts, {2}), row_major(s));
   };
-  ordered.location = mean(a.location);
+  ordered.location = mean(a.place());
   ordered.rotation = mean(a.rotation);
   return ordered;
 }

@@ -13,10 +13,14 @@ struct ObjectState {
   Value code;         ///< (B, K, code)
   Value mask_logits;  ///< (K, B, H, W); empty where the mask decoder did not run
   Value masks;        ///< (B, K+1, H, W), background last; likewise
+  Value centroid;     ///< (B, K, 3), of masks; empty without `mask_location`, and without masks
+
+  /// Where the objects are: at their masks' centroids with `mask_location`.
+  const Value& place() const { return centroid ? centroid : location; }
 };
 
 /// raw: (B, K, 3 + orientation + code); mask_logits: (K, B, H, W), or empty; depth: (B, 1, H, W), which
-/// `mask_window` asks for where there are masks.
+/// `mask_window` and `mask_location` ask for where there are masks.
 ObjectState object_state(const ModelConfig& config, Value raw, Value mask_logits, Value depth);
 
 /// How the objects of frame b are those of frame a (§3).

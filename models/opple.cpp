@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "graph/ops/affine.h"
 #include "graph/ops/back_project.h"
 #include "graph/ops/blend.h"
-#include "graph/ops/centre_loss.h"
 #include "graph/ops/collapse_loss.h"
 #include "graph/ops/gather_batch.h"
 #include "graph/ops/image_loss.h"
@@ -12,9 +12,11 @@
 #include "graph/ops/imagination_input.h"
 #include "graph/ops/imagination_mix.h"
 #include "graph/ops/location_loss.h"
+#include "graph/ops/mask_centroid.h"
 #include "graph/ops/move_background.h"
 #include "graph/ops/pose_contrast.h"
 #include "graph/ops/project.h"
+#include "graph/ops/reduce_sum.h"
 #include "graph/ops/relayout.h"
 #include "graph/ops/slice.h"
 #include "graph/ops/slot_contrast.h"
@@ -26,6 +28,7 @@
 #include "models/imagination_net.h"
 #include "models/network_options.h"
 #include "models/object_net.h"
+#include "models/squared_difference.h"
 #include "runtime/error.h"
 
 namespace vkopple {
@@ -34,6 +37,13 @@ namespace {
 constexpr int64_t kFrames = 3;
 
 float as_float(double value) { return static_cast<float>(value); }
+
+/// How far slots' locations are from their masks' centroids: the mean over B, K and 3 of the squares (§6).
+Value centre_loss(const ObjectState& state, Value points) {
+  const Value centroid = state.centroid ? state.centroid : mask_centroid(state.masks, points);
+  const Value squares = squared_difference(centroid, state.location);
+  return affine(reduce_sum(squares, {0, 1, 2}), 1.0F / static_cast<float>(squares.shape().elements()), 0);
+}
 
 }  // namespace
 
@@ -90,11 +100,12 @@ void Opple::build_background_only() {
 /// Which of the three frames pass depth network and mask decoder.
 std::vector<bool> Opple::seen_fully() const {
   const bool all = config_.statistics_frames == StatisticsFrames::kAll;
-  return {all, true, all};
+  return {all || config_.mask_location, true, all};
 }
 
 /// The frames' depths, empty where a frame doesn't pass the network. Losses read frame 2's; the others pass it
-/// for their part in its running averages alone, in calls of their own, so that backward leaves them out.
+/// for their part in its running averages alone, in calls of their own, so that backward leaves them out; with
+/// `mask_location` motion reads frame 1's too.
 std::vector<Value> Opple::see_depth(Value images4) {
   const int64_t b = options_.batch;
   const auto frames = seen_fully();
@@ -170,7 +181,7 @@ void Opple::add_losses(const std::vector<ObjectState>& o, const ObjectMotion& mo
   const Matching matching = match_objects(config_, o[1], o[2]);
   const ObjectState predicted = in_order_of(matching, motion.predicted);
   losses_["image"] = image_loss(predicted_, image3_);
-  losses_["centre"] = centre_loss(o[1].masks, points2, o[1].location);
+  losses_["centre"] = centre_loss(o[1], points2);
   losses_["location"] = location_loss(predicted.location, o[2].location, matching.q);
   losses_["pose"] = orientation_loss(config_, predicted, o[2], matching.q);
   // Terms that join scenes need the whole batch, which may be of several processes.
@@ -215,6 +226,7 @@ void Opple::keep_objects(const std::string& name, const ObjectState& state) {
   keep(name + ".rotation", state.rotation);
   keep(name + ".mask_logits", state.mask_logits);
   keep(name + ".masks", state.masks);
+  keep(name + ".centroid", state.centroid);
 }
 
 std::vector<InitialTensor> Opple::tensors() const {

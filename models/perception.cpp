@@ -40,7 +40,7 @@ Percepts Perception::see(std::span<const float> images) {
   percepts.depth = executor_->read(depth_);
   if (options_.objects) {
     percepts.masks = executor_->read(objects_.masks);
-    percepts.location = executor_->read(objects_.location);
+    percepts.location = executor_->read(objects_.place());
     percepts.code = executor_->read(objects_.code);
     if (objects_.log_pose) percepts.log_pose = executor_->read(objects_.log_pose);
     if (objects_.rotation) percepts.rotation = executor_->read(objects_.rotation);

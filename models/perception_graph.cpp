@@ -25,7 +25,7 @@ PerceptionGraph perception_graph(Graph& graph, const ModelConfig& config, int64_
   use(layers);
   made.objects = object_state(config, out.raw, out.mask_logits, made.depth);
   graph.keep("masks", made.objects.masks);
-  graph.keep("location", made.objects.location);
+  graph.keep("location", made.objects.place());
   if (made.objects.log_pose) graph.keep("log_pose", made.objects.log_pose);
   if (made.objects.rotation) graph.keep("rotation", made.objects.rotation);
   graph.keep("code", made.objects.code);

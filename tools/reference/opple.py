@@ -31,6 +31,7 @@ class Config:
     max_height: float = 5.0
     beta: float = 1.0
     mask_window: float = 0.0   # how far masks reach around their slot's location; 0: anywhere
+    mask_location: bool = False   # objects are at their masks' centroids, and move as those do
     reg: float = 1.0
     smoothness: float = 0.0    # factors of two more terms
     pose_contrast: float = 0.0
@@ -431,6 +432,12 @@ def splat(cfg, image, points, weight):
     return out[:, :3], out[:, 3], total.reshape(-1, h + 2, w + 2)[:, 1:-1, 1:-1]
 
 
+def mask_centroid(masks, points):
+    """(B, K, 3), where objects' masks are: the last of `masks` (B, K+1, H, W) is background"""
+    objects = masks[:, :-1]
+    return torch.einsum("bkhw,bchw->bkc", objects, points) / (objects.sum((2, 3)) + 1e-22)[..., None]
+
+
 # ---- the whole ------------------------------------------------------------------------------------------
 
 class Opple(nn.Module):
@@ -447,20 +454,26 @@ class Opple(nn.Module):
     def perceive(self, image):
         """What one image shows: dict of depth, masks, location, log_pose, code."""
         depth = self.cfg.max_depth * torch.sigmoid(self.depth_net(image)[:, 0])
-        return {"depth": depth, **self.objects(image, depth=depth)}
+        state = self.objects(image, depth=depth)
+        return {"depth": depth, **state, "location": state["place"]}
 
     def objects(self, image, masks=True, depth=None):
         raw, logits = self.object_net(image, masks)
         state = decode(self.cfg, raw)
-        if masks and self.cfg.mask_window > 0:
-            away = back_project(self.cfg, depth)[:, None] - state["location"][..., None, None]
+        if not masks:
+            return dict(state, place=state["location"])
+        points = back_project(self.cfg, depth)
+        if self.cfg.mask_window > 0:
+            away = points[:, None] - state["location"][..., None, None]
             logits = logits - away.square().sum(2) / (2 * self.cfg.mask_window ** 2)
-        return dict(state, masks=F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1), mask_logits=logits) if masks else state
+        masks = F.softmax(F.pad(logits, (0, 0, 0, 0, 0, 1)), 1)
+        place = mask_centroid(masks, points) if self.cfg.mask_location else state["location"]
+        return dict(state, place=place, masks=masks, mask_logits=logits)
 
     def forward(self, images, poses):
         """images 3 x (B, 3, H, W) in [0, 1]; poses 3 x (B, 6) -> dict of every named stage"""
         cfg = self.cfg
-        seen = [frame == 1 or cfg.statistics_frames == "all" for frame in range(3)]     # for batch norm's averages
+        seen = [frame == 1 or cfg.statistics_frames == "all" or (frame == 0 and cfg.mask_location) for frame in range(3)]
         depths = [cfg.max_depth * torch.sigmoid(self.depth_net(image)[:, 0]) if s else None for image, s in zip(images, seen)]
         depth = depths[1]
         o1, o2, o3 = (self.objects(*frame) for frame in zip(images, seen, depths))
@@ -468,14 +481,14 @@ class Opple(nn.Module):
         ego12, ego23 = ego_motion(poses[0], poses[1]), ego_motion(poses[1], poses[2])
 
         log_w12, q12 = match(cfg, o1["code"], o2["code"])
-        o1_aligned = align(log_w12, o1)
+        o1_aligned, place2 = align(log_w12, dict(o1, location=o1["place"])), o2["place"]
         spatial = cfg.orientation == "euler"
         apply = lambda m, x: x @ m[:, :3, :3].transpose(1, 2) + m[:, None, :3, 3]
         carry = lambda m, ego, x: apply(m, x)
         if cfg.relaxed:
             carry = lambda m, ego, x: x + self.move_location(torch.cat([ego[:, None].expand(-1, x.shape[1], -1), x], 2))
-        velocity = (o2["location"] - carry(m12, ego12, o1_aligned["location"])) * q12[..., None]
-        location3 = carry(m23, ego23, o2["location"] + velocity)
+        velocity = (place2 - carry(m12, ego12, o1_aligned["location"])) * q12[..., None]
+        location3 = carry(m23, ego23, place2 + velocity)
 
         points2 = back_project(cfg, depth)
         if spatial:
@@ -488,12 +501,12 @@ class Opple(nn.Module):
             still = points2.new_tensor([0, 0, 0, 1, 0]).expand(len(depth), 1, 5)
             motion = torch.cat([torch.cat([velocity, turned["direction"]], 2), still], 1)    # (B, K+1, 5)
         if spatial:
-            points3 = self.rigid_pixels(points2, m23, o2["location"], velocity, turn_matrix(turned["turn_vector"]))
+            points3 = self.rigid_pixels(points2, m23, place2, velocity, turn_matrix(turned["turn_vector"]))
         elif cfg.relaxed:
-            points3 = self.move_pixels(points2, ego23, o2["location"], location3, motion)
+            points3 = self.move_pixels(points2, ego23, place2, location3, motion)
         else:
             angles = F.pad(turned["omega"][..., None], (0, 2))
-            points3 = self.rigid_pixels(points2, m23, o2["location"], velocity, euler(angles.cos(), angles.sin()))
+            points3 = self.rigid_pixels(points2, m23, place2, velocity, euler(angles.cos(), angles.sin()))
         warped, warped_depth, total = splat(cfg, images[1], points3, o2["masks"])
         share = 0.99 * total.clamp(0, 1) * (1.0 if cfg.warp else 0.0)
 
@@ -553,8 +566,7 @@ def losses(cfg, out, image3, permutation):
     o1, o2, o3 = out["o1"], out["o2"], out["o3"]
     log_w23, q23 = match(cfg, o2["code"], o3["code"])
     predicted = align(log_w23, {k: out[k + "3"] for k in ("location", "log_pose", "rotation") if k + "3" in out})
-    mask = o2["masks"][:, :-1]
-    centre = torch.einsum("bkhw,bchw->bkc", mask, out["points2"]) / (mask.sum((2, 3)) + 1e-22)[..., None]
+    centre = mask_centroid(o2["masks"], out["points2"])
     terms = dict(image=((out["predicted"] - image3) ** 2).sum((1, 2, 3)).mean(),
                  centre=((centre - o2["location"]) ** 2).mean(),
                  location=(((predicted["location"] - o3["location"]) ** 2).sum(2) * q23).sum(1).mean(),

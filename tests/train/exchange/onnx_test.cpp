@@ -211,6 +211,14 @@ TEST(OnnxExport, TakesTheDistanceOfWindowsFromDepth) {
   EXPECT_EQ(sums(), 1);
 }
 
+TEST(OnnxExport, TakesLocationsFromMasks) {
+  ModelWeights weights = test::drawn_weights();
+  const auto centroids = [&] { return inspect(exported(weights).graph()).kinds["Div"]; };
+  EXPECT_EQ(centroids(), 0);
+  weights.header.config.model.mask_location = true;
+  EXPECT_EQ(centroids(), 1);
+}
+
 TEST(OnnxExport, RefusesRotationInSpace) {
   ModelWeights weights = test::drawn_weights();
   weights.header.config.model.orientation = Orientation::kEuler;

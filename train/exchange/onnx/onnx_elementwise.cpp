@@ -72,6 +72,21 @@ void slot_masks_to_onnx(OnnxGraph& onnx, const Node& node) {
   onnx.define(node.outputs[0], onnx.add("Softmax", {all}, {{"axis", std::int64_t{1}}}));
 }
 
+/// docs/model.md §6: Σ π P / (Σ π + 1e-22), the sum over pixels as a product of matrices.
+void mask_centroid_to_onnx(OnnxGraph& onnx, const Node& node) {
+  const Shape& masks = onnx.shape(node.inputs[0]);
+  const std::int64_t batch = masks[0], objects = masks[1] - 1, pixels = masks[2] * masks[3];
+  const std::string weights =
+      onnx.reshape(onnx.slice(onnx.tensor(node.inputs[0]), 1, 0, objects), {batch, objects, pixels});
+  const std::string points =
+      onnx.add("Transpose", {onnx.reshape(onnx.tensor(node.inputs[1]), {batch, 3, pixels})},
+               {{"perm", std::vector<std::int64_t>{0, 2, 1}}});
+  const std::string sum = onnx.add("MatMul", {weights, points});
+  const std::string total = onnx.add("ReduceSum", {weights, onnx.ints(std::vector<std::int64_t>{2})},
+                                     {{"keepdims", std::int64_t{1}}});
+  onnx.define(node.outputs[0], onnx.add("Div", {sum, onnx.affine(total, 1, 1e-22F)}));
+}
+
 /// docs/model.md §2.2: θ = 0.6 fov (2σ(l₀) − 1), ρ = max_depth σ(l₁), (ρ sin θ, ρ cos θ, max_height (2σ(l₂) −
 /// 1)).
 void decode_location_to_onnx(OnnxGraph& onnx, const Node& node) {

@@ -7,7 +7,7 @@
 namespace vkopple {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 22> kTranslators{
+constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 23> kTranslators{
     {{"adaptive_avg_pool", adaptive_avg_pool_to_onnx},
      {"add_repeated", add_repeated_to_onnx},
      {"affine", affine_to_onnx},
@@ -22,6 +22,7 @@ constexpr std::array<std::pair<std::string_view, OnnxTranslator>, 22> kTranslato
      {"leaky_relu", leaky_relu_to_onnx},
      {"linear", linear_to_onnx},
      {"lstm", lstm_to_onnx},
+     {"mask_centroid", mask_centroid_to_onnx},
      {"permute", permute_to_onnx},
      {"reduce_sum", reduce_sum_to_onnx},
      {"relayout", relayout_to_onnx},

@@ -30,6 +30,7 @@ void binary_to_onnx(OnnxGraph& onnx, const Node& node);
 void reduce_sum_to_onnx(OnnxGraph& onnx, const Node& node);
 void add_repeated_to_onnx(OnnxGraph& onnx, const Node& node);
 void slot_masks_to_onnx(OnnxGraph& onnx, const Node& node);
+void mask_centroid_to_onnx(OnnxGraph& onnx, const Node& node);
 void decode_location_to_onnx(OnnxGraph& onnx, const Node& node);
 void back_project_to_onnx(OnnxGraph& onnx, const Node& node);
 // onnx_shapes.cpp

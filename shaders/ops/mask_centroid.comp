@@ -1,62 +1,45 @@
-// variants: strips centres location pixels
+// variants: strips centroids pixels
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "access.glsl"
 
-// loss = mean over B, K, 3 of (c - X)^2 with c = sum of m P / s, s = sum of m + 1e-22; masks m (B, K + 1, H W), points P (B, 3, H W),
-// location X (B, K, 3).
+// c = sum of m P / s, s = sum of m + 1e-22; masks m (B, K + 1, H W), points P (B, 3, H W), centroids c (B, K, 3).
 //   strips: one invocation sums (m P, m) over one strip of pixels of one object, in sums of 32
-//   centres: one invocation adds an object's strips to (c, s) and writes its term, the sum over 3
-// With g = 2 / (3 B K) (c - X) dloss:
-//   location: dX = -g, one word an invocation
-//   pixels: dm = g . (P - c) / s, 0 for background; dP = sum over k of g m / s; one pixel an invocation
+//   centroids: one invocation adds an object's strips to c, and to (c, s) for backward
+//   pixels: dm = dc . (P - c) / s, 0 for background; dP = sum over k of dc m / s; one pixel an invocation
 layout(push_constant) uniform Push {
   uint batch;
   uint slots;
   uint pixels;
   uint strip;
   uint strips;
-  float scale;  // 2 / (3 B K)
   uint want_masks;
   uint want_points;
   uint accumulate_masks;
   uint accumulate_points;
-  uint accumulate_location;
 } p;
 
 #if defined(STRIPS)
 READ1(0, masks)
 READ1(1, points)
 WRITE4(2, sums)
-#elif defined(CENTRES)
+#elif defined(CENTROIDS)
 READ4(0, sums)
-READ1(1, location)
-WRITE4(2, centres)
-WRITE1(3, terms)
-#elif defined(LOCATION)
-READ4(0, centres)
-READ1(1, location)
-READ1(2, dloss)
-WRITE1(3, dlocation)
+WRITE4(1, weighed)
+WRITE1(2, centroids)
 #else
 READ1(0, masks)
 READ1(1, points)
-READ4(2, centres)
-READ1(3, location)
-READ1(4, dloss)
-WRITE1(5, dmasks)
-WRITE1(6, dpoints)
+READ4(2, weighed)
+READ1(3, dcentroids)
+WRITE1(4, dmasks)
+WRITE1(5, dpoints)
 #endif
 
-#if defined(STRIPS) || defined(PIXELS)
+#if !defined(CENTROIDS)
 vec3 point_of(uint image, uint pixel) {
   uint at = image * 3 * p.pixels + pixel;
   return vec3(load1(points, at), load1(points, at + p.pixels), load1(points, at + 2 * p.pixels));
-}
-#endif
-#if defined(CENTRES) || defined(PIXELS)
-vec3 location_of(uint object) {
-  return vec3(load1(location, 3 * object), load1(location, 3 * object + 1), load1(location, 3 * object + 2));
 }
 #endif
 
@@ -78,19 +61,14 @@ void main() {
     sum += part;
   }
   store4(sums, i, sum)
-#elif defined(CENTRES)
+#elif defined(CENTROIDS)
   if (i >= objects) return;
   vec4 sum = vec4(0);
   for (uint s = 0; s < p.strips; ++s) sum += load4(sums, s * objects + i);
   float total = sum.w + 1e-22;
-  vec3 centre = sum.xyz / total;
-  vec3 d = centre - location_of(i);
-  store4(centres, i, vec4(centre, total))
-  terms[i] = dot(d, d);
-#elif defined(LOCATION)
-  if (i >= 3 * objects) return;
-  float d = load4(centres, i / 3)[i % 3] - load1(location, i);
-  add1(dlocation, i, -p.scale * load1(dloss, 0) * d, p.accumulate_location)
+  vec3 c = sum.xyz / total;
+  store4(weighed, i, vec4(c, total))
+  for (uint axis = 0; axis < 3; ++axis) centroids[3 * i + axis] = c[axis];
 #else
   if (i >= p.batch * p.pixels) return;
   uint image = i / p.pixels;
@@ -98,13 +76,12 @@ void main() {
   vec3 point = point_of(image, pixel);
   vec3 dpoint = vec3(0);
   uint mask = image * (p.slots + 1) * p.pixels + pixel;
-  float factor = p.scale * load1(dloss, 0);
   for (uint k = 0; k < p.slots; ++k) {
     uint object = image * p.slots + k;
-    vec4 centre = load4(centres, object);
-    vec3 g = factor * (centre.xyz - location_of(object)) / centre.w;
+    vec4 c = load4(weighed, object);
+    vec3 g = vec3(load1(dcentroids, 3 * object), load1(dcentroids, 3 * object + 1), load1(dcentroids, 3 * object + 2)) / c.w;
     dpoint += g * load1(masks, mask + k * p.pixels);
-    if (p.want_masks != 0) add1(dmasks, mask + k * p.pixels, dot(g, point - centre.xyz), p.accumulate_masks)
+    if (p.want_masks != 0) add1(dmasks, mask + k * p.pixels, dot(g, point - c.xyz), p.accumulate_masks)
   }
   if (p.want_masks != 0) add1(dmasks, mask + p.slots * p.pixels, 0.0, p.accumulate_masks)
   if (p.want_points != 0)

@@ -40,6 +40,9 @@ install(FILES docs/api.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libvkopple-de
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/vkopple COMPONENT program)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/vkopple/docs COMPONENT program)
 
+install(FILES models/trained/README.md models/trained/rooms-small.safetensors DESTINATION ${CMAKE_INSTALL_DATADIR}/vkopple/trained
+  COMPONENT program)
+
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_VENDOR vkopple)

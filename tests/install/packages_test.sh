@@ -36,6 +36,7 @@ for command in "" $("$work/tree/usr/bin/vkopple" completion bash | sed -nE "s/^ 
   read_page "$page" >"$work/page"
   grep -q '^\.TH' "$work/page" || fail "the manual of vkopple$command is no manual page: $(cat "$work/page")"
 done
+holds vkopple share/vkopple/trained/rooms-small.safetensors
 holds libvkopple0 lib/libvkopple.so.0
 holds libvkopple-dev include/vkopple.h
 holds libvkopple-dev lib/libvkopple.so

@@ -10,7 +10,8 @@ namespace {
 
 using nlohmann::json;
 
-// Bounds of docs/results.md, and above what needs no learning, in 128 rooms that training never draws.
+// Somewhat below the scores in models/trained/README.md, and above what needs no learning, in 128 rooms that
+// training never draws.
 TEST(TrainedModel, FindsObjectsPlacesAndDepth) {
   const auto model = std::filesystem::path(VKOPPLE_SOURCE_DIR) / "models/trained/rooms-small.safetensors";
   EXPECT_LE(std::filesystem::file_size(model), 20'000'000U);
@@ -23,11 +24,11 @@ TEST(TrainedModel, FindsObjectsPlacesAndDepth) {
     EXPECT_GT(scores.at("ari_fg"), baseline.at("ari_fg")) << name;
     EXPECT_GT(scores.at("iou"), baseline.at("iou")) << name;
   }
-  EXPECT_GT(scores.at("ari_fg"), 0.30);
-  EXPECT_GT(scores.at("iou"), 0.30);
-  EXPECT_GT(scores.at("depth_r"), 0.80);
-  EXPECT_GT(scores.at("angle_r"), 0.60);
-  EXPECT_GT(scores.at("distance_r"), 0.20);
+  EXPECT_GT(scores.at("ari_fg"), 0.65);
+  EXPECT_GT(scores.at("iou"), 0.55);
+  EXPECT_GT(scores.at("depth_r"), 0.92);
+  EXPECT_GT(scores.at("angle_r"), 0.95);
+  EXPECT_GT(scores.at("distance_r"), 0.60);
 }
 
 }  // namespace

@@ -462,7 +462,7 @@ class Opple(nn.Module):
         state = decode(self.cfg, raw)
         if not masks:
             return dict(state, place=state["location"])
-        points = back_project(self.cfg, depth)
+        points = back_project(self.cfg, depth) if self.cfg.mask_window > 0 or self.cfg.mask_location else None
         if self.cfg.mask_window > 0:
             away = points[:, None] - state["location"][..., None, None]
             logits = logits - away.square().sum(2) / (2 * self.cfg.mask_window ** 2)

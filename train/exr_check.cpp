@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "train/as_text.h"
 #include "train/image.h"
 
 namespace vkopple {
@@ -13,10 +14,6 @@ namespace {
 constexpr std::string_view kMagic = "\x76\x2f\x31\x01";
 constexpr std::uint32_t kSeveralParts = 0x1000;  // a bit of the second word
 constexpr const char* kCutOff = "the EXR is cut off or damaged (a header that does not end)";
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 /// Of the file's machine-independent order, which is ours.
 template <class Number>

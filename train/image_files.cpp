@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "runtime/error.h"
 #include "train/natural_order.h"
+#include "train/picture_reader.h"
 #include "train/quote.h"
 
 namespace vkopple {
@@ -17,28 +20,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Endings of the formats that OpenImageIO reads, of a text "png:png;jpeg:jpg,jpe,jpeg;...".
+/// Endings of the formats that are read, of a text "png:png;jpeg:jpg,jpe,jpeg;...".
 std::set<std::string> endings() {
-  const std::string list = OIIO::get_string_attribute("extension_list");
+  std::istringstream list(OIIO::get_string_attribute("extension_list"));
   std::set<std::string> found;
-  std::string word;
-  for (const char c : list + ";") {
-    if (c == ',' || c == ';') found.insert(word);
-    if (c == ',' || c == ';' || c == ':')
-      word.clear();
-    else
-      word += c;
+  for (std::string format; std::getline(list, format, ';');) {
+    const std::size_t colon = std::min(format.find(':'), format.size());
+    if (!picture_readers().contains(std::string_view(format).substr(0, colon))) continue;
+    std::istringstream words(format.substr(std::min(colon + 1, format.size())));
+    for (std::string word; std::getline(words, word, ',');) found.insert(word);
   }
   return found;
-}
-
-/// The ending of a file's name in small letters.
-std::string ending(const fs::path& path) {
-  std::string text = path.extension().string();
-  text.erase(0, 1);
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
 }
 
 }  // namespace
@@ -52,7 +44,8 @@ std::vector<fs::path> image_files(const fs::path& path) {
        entry.increment(failed)) {
     std::error_code unknown;
     const bool hidden = entry->path().filename().string().starts_with('.');
-    if (!hidden && entry->is_regular_file(unknown) && known.contains(ending(entry->path())))
+    if (!hidden && entry->is_regular_file(unknown) &&
+        known.contains(small_ending(entry->path().filename().string())))
       files.push_back(entry->path());
   }
   const std::string name = quote(path.string(), 4096);

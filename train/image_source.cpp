@@ -11,6 +11,7 @@
 
 #include "train/atomic_file.h"
 #include "train/exr_check.h"
+#include "train/picture_reader.h"
 #include "train/png_check.h"
 #include "train/quote.h"
 
@@ -55,13 +56,14 @@ class WithinBytes : public OIIO::Filesystem::IOMemReader {
   }
 };
 
-/// The format of a file that is checked before the library sees it; null for others. Also tells a missing file
-/// from a strange one, which the library's messages do not.
-const char* checked_format(const fs::path& path) {
+/// The reader for a file by its first bytes. Also tells a missing file from a strange one, which the library's
+/// messages do not.
+std::string_view reader_of(const fs::path& path) {
   const FileDescriptor file = open_for_reading(path);
-  std::array<std::byte, 8> start{};
-  if (::read(file.get(), start.data(), start.size()) != 8) return nullptr;
-  return looks_like_png(start) ? "png" : looks_like_exr(start) ? "exr" : nullptr;
+  std::array<std::byte, kPictureStart> start{};
+  const ssize_t got = ::read(file.get(), start.data(), start.size());
+  return picture_reader(std::span(start).first(static_cast<std::size_t>(std::max<ssize_t>(got, 0))),
+                        small_ending(path.filename().string()));
 }
 
 }  // namespace
@@ -73,11 +75,17 @@ void fail_reading(const std::string& source, const std::string& reason) {
 }
 
 ImageSource::ImageSource(const fs::path& path) : source_(path.string()) {
-  if (const char* format = checked_format(path); format != nullptr) {
+  const std::string_view reader = reader_of(path);
+  if (reader.empty()) fail("not a picture of a known format");
+  if (reader == "png" || reader == "openexr") {
     content_ = read_file(path, kMaxCheckedBytes);
-    open(content_, format);
+    open(content_, reader == "png" ? "png" : "exr");
   } else {
-    image_ = ImageInput::open(source_, &wishes());
+    image_ = ImageInput::create(std::string(reader));
+    if (!image_) fail("this build of OpenImageIO has no reader " + std::string(reader));
+    ImageSpec ignored;
+    // Whole, so that no part of a name is taken for a protocol.
+    if (!image_->open(fs::absolute(path).string(), ignored, wishes())) fail(kStrange + image_->geterror());
   }
   check();
 }

@@ -5,15 +5,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "train/as_text.h"
+
 namespace vkopple {
 namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 constexpr std::size_t kFrameBytes = 12;  // of a chunk: length, type, checksum
-
-std::string_view as_text(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 std::uint32_t big_endian(std::span<const std::byte> bytes) {
   std::uint32_t value = 0;

@@ -15,8 +15,8 @@ namespace vkopple {
 // taken (at most 16384 on a side and 2^26 pixels), and whatever is wrong is an Error naming the file
 // (`source`). Writing gives the same bytes for the same picture, every time.
 
-/// Any picture that OpenImageIO reads: grey becomes RGB, alpha and further channels are dropped, integers are
-/// scaled to [0, 1], floats clamped to it.
+/// Any picture of a kind that picture_reader() knows: grey becomes RGB, alpha and further channels are dropped,
+/// integers are scaled to [0, 1], floats clamped to it.
 RgbImage read_rgb(const std::filesystem::path& path);
 
 /// The same of a PNG in memory.

@@ -39,8 +39,6 @@ constexpr std::array kSignatures{
     Signature{0, "Pf"sv, "pnm"sv},
     Signature{0, "#?RADIANCE"sv, "hdr"sv},
     Signature{0, "#?RGBE"sv, "hdr"sv},
-    Signature{0, "\0\0\0\x0cjP  "sv, "jpeg2000"sv},
-    Signature{0, "\xff\x4f\xff\x51"sv, "jpeg2000"sv},
     Signature{0, "8BPS"sv, "psd"sv},
     Signature{0, "SDPX"sv, "dpx"sv},
     Signature{0, "XPDS"sv, "dpx"sv},

@@ -80,6 +80,10 @@ TEST(ImageIo, ReadsManyKinds) {
   EXPECT_EQ(read_rgb(folder / "float.exr").pixels, (std::vector<float>{0, 0.25f, 1}));
   write_any(folder / "a.jpg", 3, TypeDesc::UINT8, std::vector<float>(3 * 64, 0.6f), 8, 8);
   EXPECT_NEAR(read_rgb(folder / "a.jpg").pixels[5], 0.6f, 0.02f);
+  for (const char* name : {"a.bmp", "a.dpx", "a.hdr", "a.ico", "a.ppm", "a.sgi", "a.tga", "a.webp"}) {
+    write_any(folder / name, 3, TypeDesc::UINT8, std::vector<float>(3 * 64, 0.6f), 8, 8);
+    EXPECT_NEAR(read_rgb(folder / name).pixels[5], 0.6f, 0.02f) << name;
+  }
 }
 
 TEST(ImageIo, AlphaDoesNotDarken) {

@@ -262,7 +262,7 @@ void add_infer(CLI::App& app) {
   command
       ->add_option(
           "image", o->images,
-          "Images of any size and format that OpenImageIO reads, folders of such, animations and videos")
+          "Images of any size (PNG, JPEG, TIFF, EXR, WebP and others), folders of such, animations and videos")
       ->required();
   command
       ->add_option("--out", o->out,

@@ -22,6 +22,9 @@ void fail_test(const std::string& message) {
 
 }  // namespace
 
+// What is static below is made after test_device(), and so destroyed before it: before the layers' own static
+// objects, too, which the first device brings.
+
 const Device& test_device() {
   // As the program does.
   static const bool wide = (prefer_wide_vectors(), true);
@@ -36,8 +39,8 @@ const Device& exact_device() {
 }
 
 const Device* family_device(KernelFamily family, bool exact_sums) {
-  static std::map<std::pair<KernelFamily, bool>, std::unique_ptr<Device>> devices;
   if (!missing_for(family, test_device().caps()).empty()) return nullptr;
+  static std::map<std::pair<KernelFamily, bool>, std::unique_ptr<Device>> devices;
   auto& device = devices[{family, exact_sums}];
   if (!device)
     device = std::make_unique<Device>(DeviceOptions{.selector = "",
@@ -64,8 +67,8 @@ const Device* plain_stores_device() {
 }
 
 const Device* winograd_device(WinogradUse use) {
-  static std::map<WinogradUse, std::unique_ptr<Device>> devices;
   if (!missing_for(use, test_device().caps()).empty()) return nullptr;
+  static std::map<WinogradUse, std::unique_ptr<Device>> devices;
   auto& device = devices[use];
   if (!device)
     device = std::make_unique<Device>(
@@ -74,11 +77,11 @@ const Device* winograd_device(WinogradUse use) {
 }
 
 const Device* other_access_device(KernelFamily family) {
-  static std::map<KernelFamily, std::unique_ptr<Device>> devices;
   const Caps& caps = test_device().caps();
   const bool texel = caps.access == AccessPath::kTexel;
   const AccessPath other = texel ? AccessPath::kStorage : AccessPath::kTexel;
   if (!missing_for(other, caps).empty() || !missing_for(family, caps).empty()) return nullptr;
+  static std::map<KernelFamily, std::unique_ptr<Device>> devices;
   auto& device = devices[family];
   if (!device)
     device = std::make_unique<Device>(DeviceOptions{

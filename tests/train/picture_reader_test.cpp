@@ -56,7 +56,7 @@ TEST(PictureReader, EndingsAreSmall) {
   EXPECT_EQ(small_ending("a."), "");
 }
 
-/// FFmpeg would show the frames of the other file.
+/// OpenImageIO would give the second to FFmpeg, which shows the frames of the other file.
 TEST(PictureReader, ATextThatNamesAnotherFileIsNotFollowed) {
   const TempFolder folder;
   write_film(folder / "film.gif", {RgbImage(4, 4), RgbImage(4, 4)});

@@ -6,7 +6,7 @@ namespace vkopple::test {
 namespace {
 
 // vkCreateDevice below is called from anywhere.
-VkPhysicalDeviceFeatures last{};
+thread_local VkPhysicalDeviceFeatures last{};
 
 }  // namespace
 

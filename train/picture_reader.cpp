@@ -54,8 +54,6 @@ constexpr std::array kSignatures{
     Signature{4, "mdat"sv, "ffmpeg"sv},
     Signature{4, "wide"sv, "ffmpeg"sv},
     Signature{8, "AVI "sv, "ffmpeg"sv},
-    Signature{0, "\x1a\x45\xdf\xa3"sv, "ffmpeg"sv},  // Matroska, WebM
-    Signature{0, "OggS"sv, "ffmpeg"sv},
 };
 // Two kinds that only their endings tell: pictures with nothing at their beginning, and those of cameras, which
 // begin as a TIFF does.
@@ -63,17 +61,14 @@ constexpr std::string_view kTarga = "targa";
 constexpr std::string_view kRaw = "raw";
 constexpr std::array kRawEndings{"arw"sv, "cr2"sv, "dng"sv, "nef"sv, "nrw"sv, "orf"sv, "pef"sv, "srw"sv};
 
-bool is_one_of(const auto& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 }  // namespace
 
 std::string_view picture_reader(std::span<const std::byte> start, std::string_view ending) {
   const std::string_view text = as_text(start.first(std::min(start.size(), kPictureStart)));
   for (const Signature& known : kSignatures) {
     if (text.size() < known.offset || !text.substr(known.offset).starts_with(known.bytes)) continue;
-    return known.reader == "tiff" && is_one_of(kRawEndings, ending) ? kRaw : known.reader;
+    const bool raw = known.reader == "tiff" && std::ranges::find(kRawEndings, ending) != kRawEndings.end();
+    return raw ? kRaw : known.reader;
   }
   return ending == "tga" ? kTarga : "";
 }

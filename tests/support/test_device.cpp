@@ -22,8 +22,8 @@ void fail_test(const std::string& message) {
 
 }  // namespace
 
-// What is static below is made after test_device(), and so destroyed before it: before the layers' own static
-// objects, too, which the first device brings.
+// Maps of devices are made after test_device(), and so destroyed before it, and before the layers' own static
+// objects, which the first device brings.
 
 const Device& test_device() {
   // As the program does.

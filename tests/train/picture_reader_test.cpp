@@ -45,8 +45,9 @@ TEST(PictureReader, GoesByTheEndingWhereNothingElseTells) {
 }
 
 TEST(PictureReader, TextsAndWhatIsCutOffAreNoPictures) {
-  for (const auto text : {"#EXTM3U\n#EXTINF:1,\na.ts"sv, "ffconcat version 1.0"sv, "v=0\r\nc=IN IP4 0.0.0.0"sv,
-                          "<?xml version"sv, "<MPD>"sv, "BAD"sv, "II*"sv, "RIFF\x24\0\0\0WEB"sv, ""sv})
+  for (const auto text :
+       {"#EXTM3U\n#EXTINF:1,\na.ts"sv, "ffconcat version 1.0"sv, "v=0\r\nc=IN IP4 0.0.0.0"sv, "<?xml version"sv,
+        "<MPD>"sv, "OggS\0\2"sv, "BAD"sv, "II*"sv, "RIFF\x24\0\0\0WEB"sv, ""sv})
     for (const char* ending : {"mp4", "gif", "m3u8", "png", ""}) EXPECT_EQ(reader(text, ending), "") << text;
 }
 

@@ -218,7 +218,7 @@ TEST(ConvCooperativeTest, EveryTileMatchesPlainLoops) {
   if (!missing().empty()) GTEST_SKIP() << missing();
   const auto choices = std::make_shared<TunedChoices>();
   const Device device({.selector = "",
-                       .on_message = [](const std::string& message) { ADD_FAILURE() << message; },
+                       .on_message = fail_test,
                        .kernels = KernelFamily::kCooperative,
                        .tuned = [&](const Caps&) { return choices; }});
   const ConvShape shape{2, 20, 9, 11, 40, 9, 11, 3, 1, 1, 1};

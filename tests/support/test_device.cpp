@@ -16,11 +16,11 @@ namespace {
 constexpr std::string_view kOfLaterVersions =
     "Image Type operand of OpTypeSampledImage should not have a Dim of Buffer";
 
+}  // namespace
+
 void fail_test(const std::string& message) {
   if (message.find(kOfLaterVersions) == std::string::npos) ADD_FAILURE() << "validation: " << message;
 }
-
-}  // namespace
 
 // Maps of devices are made after test_device(), and so destroyed before it, and before the layers' own static
 // objects, which the first device brings.

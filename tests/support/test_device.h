@@ -7,6 +7,10 @@
 
 namespace vkopple {
 
+/// Fails the test that runs, unless the message is one that says nothing about this project:
+/// DeviceOptions::on_message of tests' devices.
+void fail_test(const std::string& message);
+
 /// The device that tests share (VKOPPLE_DEVICE chooses it), with the validation layer loaded. Every message of
 /// the layer fails the test that runs at that moment.
 const Device& test_device();

@@ -145,7 +145,7 @@ TEST(Portions, OfSeveralProcessesAreThoseOfOne) {
   const auto gradients = alone.gradients();
   c.training.accumulate = 2;
   test::run_together(2, [&](Peers& peers) {
-    const Device device({.selector = "", .on_message = [](const std::string& m) { ADD_FAILURE() << m; }});
+    const Device device({.selector = "", .on_message = fail_test});
     Portioned shared(c, &peers, device);
     for (const auto& [name, loss] : shared.step()) {
       if (name == "collapse") continue;

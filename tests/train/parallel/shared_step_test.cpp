@@ -37,10 +37,7 @@ Config config(bool sync) {
 }
 
 std::unique_ptr<Device> exact_device_of_own() {
-  return std::make_unique<Device>(
-      DeviceOptions{.selector = "",
-                    .on_message = [](const std::string& m) { ADD_FAILURE() << "validation: " << m; },
-                    .exact_sums = true});
+  return std::make_unique<Device>(DeviceOptions{.selector = "", .on_message = fail_test, .exact_sums = true});
 }
 
 struct Outcome {

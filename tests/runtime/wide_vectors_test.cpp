@@ -60,6 +60,17 @@ TEST(WideVectors, WithoutAWidthTheFolderIsTheDrivers) {
   EXPECT_EQ(kernel_folder(), folder.path());
 }
 
+/// Otherwise a folder named after one width has code of the other, as in a process whose first device came too
+/// early.
+TEST(WideVectors, WhicheverDeviceOfTheTestsComesFirstHasTheWidthThatIsAskedFor) {
+  const Caps& first = exact_device().caps();
+  EXPECT_EQ(test_device().caps().name, first.name);
+  const char* width = std::getenv(kWidth);
+  if (first.lavapipe && width != nullptr) {
+    EXPECT_NE(first.name.find(std::string(" ") + width + " bits"), std::string::npos) << first.name;
+  }
+}
+
 /// In the second and third of these, Mesa 25.0.7 crashed or read NaN when all had one folder.
 TEST(WideVectors, ProgramsOfDifferentWidthsFollowEachOther) {
   const bool lavapipe = test_device().caps().lavapipe;

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "runtime/error.h"
-#include "runtime/wide_vectors.h"
 
 namespace vkopple {
 namespace {
@@ -26,9 +25,6 @@ void fail_test(const std::string& message) {
 // objects, which the first device brings.
 
 const Device& test_device() {
-  // As the program does.
-  static const bool wide = (prefer_wide_vectors(), true);
-  (void)wide;
   static const Device device({.selector = "", .on_message = fail_test, .access = {}, .cache_folder = {}});
   return device;
 }

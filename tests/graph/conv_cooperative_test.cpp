@@ -216,7 +216,7 @@ TEST(ConvCooperativeTest, MatchesPlainLoopsOnTheOtherAccessPath) {
 /// Small shapes are given small tiles: here every tile has its turn, by way of the tuner's choices.
 TEST(ConvCooperativeTest, EveryTileMatchesPlainLoops) {
   if (!missing().empty()) GTEST_SKIP() << missing();
-  const auto choices = std::make_shared<TunedChoices>();
+  auto choices = std::make_shared<TunedChoices>();
   const Device device({.selector = "",
                        .on_message = fail_test,
                        .kernels = KernelFamily::kCooperative,

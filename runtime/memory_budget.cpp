@@ -43,7 +43,7 @@ uint64_t free_memory(const Device& device) {
   const Caps& caps = device.caps();
   if (caps.cpu()) {
     std::ifstream meminfo("/proc/meminfo");
-    return available_memory(meminfo).value_or(caps.memory_bytes);
+    return std::min(available_memory(meminfo).value_or(caps.memory_bytes), caps.memory_bytes);
   }
   return has(extensions_of(device.physical()), VK_EXT_MEMORY_BUDGET_EXTENSION_NAME)
              ? budget_left(device.physical())
